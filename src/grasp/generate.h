@@ -1,0 +1,34 @@
+// From a grasp of the library to the fingertip motion for a new object (paper section III-C):
+// DMP rollout, central force (Eq. 7), springs (Eq. 5), contacts on the new surface.
+#pragma once
+
+#include <optional>
+
+#include "base/pose.h"
+#include "base/shape.h"
+#include "grasp/fingertip_motion.h"
+#include "grasp/grasp.h"
+
+namespace springgrasp {
+
+struct GenerateOptions {
+  Shape shape;                   // the new object
+  Pose X_WO = Pose::Identity();  // its believed pose
+  double tip_radius = 0.008;     // m, of the hand that will grasp
+  // Where the reach starts: G in the world. Absent: as demonstrated relative to the object.
+  std::optional<Pose> X_WG_start;
+  std::optional<double> duration;  // T, s; absent: as demonstrated
+  double dt = 0.005;               // s, step of samples and integrator
+  // Further rotation of the whole reach about the object's z, rad (what symmetry leaves free).
+  double yaw = 0;
+};
+
+// Samples from 0 to 1.5 T. Fingers converge to the contacts at T and stay. Throws Error for a
+// duration or step that is not positive.
+FingertipMotion GenerateMotion(const Grasp& grasp, const GenerateOptions& options);
+
+// Contacts of the involved fingers on a shape: the learned rays, or where one meets no surface a
+// point at the mean section radius (Eq. 6).
+PerFinger<Contact> ContactsOn(const Grasp& grasp, const Shape& shape, double tip_radius);
+
+}  // namespace springgrasp
