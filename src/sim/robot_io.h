@@ -1,0 +1,41 @@
+// The one place that knows where the robot's joints and actuators lie in qpos, qvel, act and ctrl.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "base/pose.h"
+#include "control/robot_state.h"
+#include "sim/simulation.h"
+
+namespace springgrasp {
+
+// Addresses of one side's arm and hand. `side` is "r" (or "l").
+class RobotIo {
+ public:
+  // Throws Error naming the joint, actuator or site that the model lacks.
+  explicit RobotIo(const mjModel& model, const std::string& side = "r");
+
+  RobotState Read(const Simulation& simulation) const;
+  void Write(const RobotCommand& command, Simulation& simulation) const;
+
+  // Sets joints (not velocities); call simulation.Forward() afterwards.
+  void Place(const ArmVector& arm_q, const HandVector& hand_q, Simulation& simulation) const;
+
+  // Hand frame and pad centres now (truth; for records, not for control).
+  Pose HandPose(const Simulation& simulation) const;
+  Eigen::Vector3d Fingertip(const Simulation& simulation, int finger) const;
+
+  ArmVector arm_lower, arm_upper;     // rad
+  HandVector hand_lower, hand_upper;  // rad
+  ArmVector max_arm_torque;           // Nm
+
+ private:
+  std::array<int, kNumArmJoints> arm_qpos_, arm_dof_, arm_ctrl_;
+  std::array<int, kNumHandJoints> hand_qpos_, hand_dof_;
+  std::array<int, kNumValves> valve_ctrl_, valve_act_;
+  int hand_site_ = -1;
+  std::array<int, 5> tip_sites_;
+};
+
+}  // namespace springgrasp

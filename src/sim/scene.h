@@ -1,0 +1,136 @@
+// SCENE: what is there. Robot, table, objects, light, cameras, demonstrator, physics. YAML keys
+// are the field names; unknown keys and values out of range are errors with file and line.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/pose.h"
+#include "base/random.h"
+#include "base/shape.h"
+
+namespace springgrasp {
+
+struct SceneTable {
+  double height = 0.9;                   // m, of the top above the floor
+  Eigen::Vector3d size{0.6, 0.5, 0.03};  // m: x, y, thickness
+  Eigen::Vector2d position{0.35, 0.65};  // m, centre of the top in W (YAML: [x, y])
+  double yaw = 0;                        // rad
+};
+
+// Half-ranges of a uniform draw about the given pose.
+struct ScenePoseNoise {
+  double x = 0, y = 0;  // m
+  double yaw = 0;       // rad
+};
+
+// What the robot wrongly believes of an object: believed = truth + error (size, mass and
+// friction: truth * (1 + error)).
+struct SceneBelief {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m
+  double yaw = 0;                                      // rad, about W's z
+  double size = 0, mass = 0, friction = 0;             // fractions
+};
+
+struct SceneObject {
+  std::string name = "object";
+  std::optional<Shape> shape;    // shape: "cylinder:0.05x0.16" ...
+  std::string model;             // ... or an MJCF (.xml) or mesh (.obj, .stl) file
+  double mass = 0.1;             // kg
+  double friction = 0.9;         // sliding coefficient, of all its contacts
+  Pose X_WO = Pose::Identity();  // YAML pose: [x, y], [x, y, z] or x y z qw qx qy qz
+  bool resting = true;           // z was not given: stands on the table or its ring
+  double yaw = 0;                // rad, beside a pose of two or three numbers
+  ScenePoseNoise pose_noise;
+  bool on_ring = false;                    // spheres: lie on a small fixed ring
+  double ring_height = 0;                  // m, from the table to the ring's bottom (a thin stand)
+  Eigen::Vector3d colour{0.8, 0.25, 0.2};  // red, green, blue, 0..1
+  SceneBelief believed;
+};
+
+struct SceneLight {
+  Eigen::Vector3d position{0, 0, 3};
+  Eigen::Vector3d lookat{0.35, 0.6, 0.9};
+  double brightness = 0.5;  // diffuse, 0..1
+  bool shadow = false;      // only seen by the pretty renderer
+};
+
+// An overview camera for videos and pictures.
+struct SceneCamera {
+  std::string name;
+  Eigen::Vector3d position{0, 0, 0};
+  Eigen::Vector3d lookat{0, 0, 0};
+  double fovy_deg = 40;
+};
+
+// Who shows the grasp, and what the eyes see of it.
+struct SceneDemonstrator {
+  std::string kind = "synthesised";  // synthesised | recorded
+  std::string type = "pinch";        // pinch | tripod | power | lateral
+  std::string file;                  // recorded: demonstration CSV
+  std::optional<Shape> object;       // the object shown; absent: shape of the scene's first
+  bool object_visible = true;        // the object is in the picture
+  std::optional<Pose> X_WO;          // where the shown object stands (YAML: pose); absent:
+                                     // chosen in the display volume before the eyes
+  double hand_length = 0.189;        // m
+  int fps = 30;                      // of the eyes, Hz
+};
+
+struct ScenePhysics {
+  double timestep = 0.002;           // s
+  std::string integrator = "Euler";  // Euler | implicit | RK4
+  std::string solver = "Newton";     // Newton | CG | PGS
+  int iterations = 50;
+  std::string cone = "elliptic";  // elliptic | pyramidal
+  double impratio = 10;
+  int noslip_iterations = 0;
+  int condim = 4;                     // of objects: 3, 4 or 6
+  double torsional_friction = 0.005;  // m
+  double rolling_friction = 0.0001;   // m
+  std::vector<double> solref{0.01, 1};
+  std::vector<double> solimp{0.95, 0.99, 0.001};
+};
+
+struct Scene {
+  std::string source;                         // file, for messages
+  std::string robot = "armar3b/armar3b.xml";  // relative to models/, or absolute
+  std::string hand = "documented";            // documented | opposition (not yet)
+  std::vector<std::string> active = {"right_arm", "right_hand"};
+  std::map<std::string, double> start;  // joint -> rad; others 0 (within range)
+  std::string torso = "fixed";          // fixed | free
+  SceneTable table;
+  std::vector<SceneObject> objects;
+  double max_finger_force = 5;       // N
+  std::vector<SceneLight> lights;    // default: two
+  std::vector<SceneCamera> cameras;  // default: front and close
+  SceneDemonstrator demonstrator;
+  ScenePhysics physics;
+};
+
+// Throws Error with file and line.
+Scene ReadScene(const std::string& path);
+Scene ParseScene(const std::string& yaml_text, const std::string& name);
+
+// Index of the object of that name, or Error listing the names.
+int ObjectIndex(const Scene& scene, const std::string& name);
+
+// True pose of an object at the start: z and yaw resolved (on the table, on its ring).
+Pose ObjectStartPose(const Scene& scene, int object);
+
+// Moves every object by a draw of its pose_noise (x, y, yaw in this order, all three always
+// drawn, so that conditions share their draws).
+void DrawObjectPoses(Scene& scene, RandomEngine& engine);
+
+// What the robot is told of an object: truth plus the believed errors. `shape` is absent for
+// objects that are files.
+struct BelievedObject {
+  std::optional<Shape> shape;
+  Pose X_WO = Pose::Identity();
+  double mass = 0;
+  double friction = 0;
+};
+BelievedObject BelieveObject(const Scene& scene, int object);
+
+}  // namespace springgrasp
