@@ -80,7 +80,7 @@ struct SceneDemonstrator {
 
 struct ScenePhysics {
   double timestep = 0.002;           // s
-  std::string integrator = "Euler";  // Euler | implicit | RK4
+  std::string integrator = "Euler";  // Euler | implicit
   std::string solver = "Newton";     // Newton | CG | PGS
   int iterations = 50;
   std::string cone = "elliptic";  // elliptic | pyramidal

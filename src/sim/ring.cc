@@ -1,0 +1,22 @@
+#include "sim/ring.h"
+
+#include <cmath>
+
+namespace springgrasp {
+
+Ring RingForSphere(double diameter) {
+  Ring ring;
+  ring.radius = 0.30 * diameter;
+  ring.tube = 0.06 * diameter;
+  return ring;
+}
+
+double SphereHeightOnRing(double diameter) {
+  const Ring ring = RingForSphere(diameter);
+  // Every capsule touches at its middle, which is nearest to the ring's axis.
+  const double a = ring.radius * std::cos(M_PI / ring.segments);
+  const double reach = diameter / 2 + ring.tube;
+  return ring.tube + std::sqrt(reach * reach - a * a);
+}
+
+}  // namespace springgrasp

@@ -1,0 +1,258 @@
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <set>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/yaml_reader.h"
+#include "sim/scene.h"
+
+namespace springgrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Bounds kInSpace{-10, 10};
+constexpr Bounds kAngle{-6.2832, 6.2832};
+constexpr Bounds kFraction{0, 1};
+constexpr Bounds kError{-0.9, 10};
+
+// Full path of a file that a scene names: absolute, beside the scene, or in the source folder.
+std::string ResolveFile(const std::string& file, const std::string& scene, const std::string& where,
+                        const char* key) {
+  const fs::path beside = fs::path(scene).parent_path() / file;
+  const fs::path shipped = fs::path(SourceFolder()) / file;
+  std::error_code ignored;
+  if (fs::is_regular_file(beside, ignored)) return fs::absolute(beside).lexically_normal();
+  if (fs::is_regular_file(shipped, ignored)) return shipped.lexically_normal();
+  Fail("{}: {} names '{}', but there is no such file beside the scene or in {}", where, key, file,
+       SourceFolder());
+}
+
+std::optional<Shape> ReadShape(YamlReader& yaml, const std::string& key) {
+  std::string text;
+  yaml.Read(key, text);
+  if (text.empty()) return std::nullopt;
+  try {
+    return ParseShape(text);
+  } catch (const Error& e) {
+    Fail("{}: {}", yaml.Where(key), e.what());
+  }
+}
+
+void ReadPlane(YamlReader& yaml, const std::string& key, Eigen::Vector2d& value) {
+  std::vector<double> v{value.x(), value.y()};
+  yaml.Read(key, v, kInSpace);
+  ThrowUnless(v.size() == 2, "{}: {} has {} numbers, expected 2 (x y)", yaml.Where(key), key,
+              v.size());
+  value = {v[0], v[1]};
+}
+
+void CheckName(const std::string& name, const std::string& where) {
+  const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_';
+  });
+  ThrowUnless(plain, "{}: name is '{}', expected letters, digits and underscores", where, name);
+  const std::set<std::string> taken = {"world", "table", "floor", "mmm_hand", "shown_object"};
+  ThrowUnless(taken.count(name) == 0 && name.rfind("hand_", 0) != 0 && name.rfind("arm_", 0) != 0,
+              "{}: the name '{}' is reserved, choose another", where, name);
+}
+
+void ReadObjectPose(YamlReader& yaml, SceneObject& object) {
+  yaml.Require("pose");
+  std::vector<double> v;
+  yaml.Read("pose", v, kInSpace);
+  object.resting = v.size() == 2;
+  if (v.size() == 2) {
+    object.X_WO.translation() = Eigen::Vector3d(v[0], v[1], 0);
+  } else {
+    ThrowUnless(v.size() == 3 || v.size() == 7,
+                "{}: pose has {} numbers, expected 2 (x y, resting on the table), 3 (x y z) or 7 "
+                "(x y z qw qx qy qz)",
+                yaml.Where("pose"), v.size());
+    yaml.Read("pose", object.X_WO);
+  }
+  yaml.Read("yaw", object.yaw, kAngle);
+}
+
+SceneObject ReadObject(YamlReader& yaml, const std::string& scene) {
+  SceneObject o;
+  yaml.Read("name", o.name);
+  CheckName(o.name, yaml.Where("name"));
+  o.shape = ReadShape(yaml, "shape");
+  yaml.Read("model", o.model);
+  ThrowUnless(o.shape.has_value() != !o.model.empty(),
+              "{}: object '{}' needs either a shape or a model (a file), not both",
+              yaml.Where("name"), o.name);
+  if (!o.model.empty()) o.model = ResolveFile(o.model, scene, yaml.Where("model"), "model");
+  if (o.shape) {
+    ThrowUnless(o.shape->size.minCoeff() >= 0.001 && o.shape->size.maxCoeff() <= 2,
+                "{}: extents of {} must lie between 0.001 and 2 m", yaml.Where("shape"),
+                FormatShape(*o.shape));
+  }
+  yaml.Read("mass", o.mass, {1e-4, 50});
+  yaml.Read("friction", o.friction, {0.01, 5});
+  ReadObjectPose(yaml, o);
+  YamlReader noise = yaml.Child("pose_noise");
+  noise.Read("x", o.pose_noise.x, kFraction);
+  noise.Read("y", o.pose_noise.y, kFraction);
+  noise.Read("yaw", o.pose_noise.yaw, {0, 3.1416});
+  noise.Finish();
+  yaml.Read("on_ring", o.on_ring);
+  ThrowUnless(!o.on_ring || (o.shape && o.shape->kind == Shape::Kind::kSphere),
+              "{}: on_ring is for spheres only", yaml.Where("on_ring"));
+  yaml.Read("ring_height", o.ring_height, {0, 0.5});
+  yaml.Read("colour", o.colour, kFraction);
+  YamlReader believed = yaml.Child("believed");
+  believed.Read("position", o.believed.position, {-1, 1});
+  believed.Read("yaw", o.believed.yaw, {-3.1416, 3.1416});
+  believed.Read("size", o.believed.size, kError);
+  believed.Read("mass", o.believed.mass, kError);
+  believed.Read("friction", o.believed.friction, kError);
+  believed.Finish();
+  yaml.Finish();
+  return o;
+}
+
+void ReadTable(YamlReader yaml, SceneTable& table) {
+  yaml.Read("height", table.height, {0.05, 2});
+  yaml.Read("size", table.size, {0.005, 5});
+  ReadPlane(yaml, "position", table.position);
+  yaml.Read("yaw", table.yaw, kAngle);
+  yaml.Finish();
+}
+
+SceneLight ReadLight(YamlReader& yaml) {
+  SceneLight light;
+  yaml.Read("position", light.position, kInSpace);
+  yaml.Read("lookat", light.lookat, kInSpace);
+  yaml.Read("brightness", light.brightness, kFraction);
+  yaml.Read("shadow", light.shadow);
+  yaml.Finish();
+  return light;
+}
+
+SceneCamera ReadCamera(YamlReader& yaml) {
+  SceneCamera camera;
+  yaml.Require("name");
+  yaml.Read("name", camera.name);
+  CheckName(camera.name, yaml.Where("name"));
+  yaml.Require("position");
+  yaml.Read("position", camera.position, kInSpace);
+  yaml.Require("lookat");
+  yaml.Read("lookat", camera.lookat, kInSpace);
+  yaml.Read("fovy_deg", camera.fovy_deg, {1, 150});
+  ThrowUnless((camera.position - camera.lookat).norm() > 1e-3,
+              "{}: the camera stands where it looks at", yaml.Where("lookat"));
+  yaml.Finish();
+  return camera;
+}
+
+void ReadDemonstrator(YamlReader yaml, const std::string& scene, SceneDemonstrator& d) {
+  yaml.Read("kind", d.kind, {"synthesised", "recorded"});
+  yaml.Read("type", d.type, {"pinch", "tripod", "power", "lateral"});
+  yaml.Read("file", d.file);
+  if (d.kind == "recorded") {
+    yaml.Require("file");
+    d.file = ResolveFile(d.file, scene, yaml.Where("file"), "file");
+  } else {
+    ThrowUnless(d.file.empty(), "{}: file is given, but kind is synthesised, expected recorded",
+                yaml.Where("file"));
+  }
+  d.object = ReadShape(yaml, "object");
+  yaml.Read("object_visible", d.object_visible);
+  if (yaml.Has("pose")) {
+    d.X_WO = Pose::Identity();
+    yaml.Read("pose", *d.X_WO);
+  }
+  yaml.Read("hand_length", d.hand_length, {0.1, 0.3});
+  yaml.Read("fps", d.fps, {5, 1000});
+  yaml.Finish();
+}
+
+void ReadPhysics(YamlReader yaml, ScenePhysics& p) {
+  yaml.Read("timestep", p.timestep, {1e-5, 0.01});
+  yaml.Read("integrator", p.integrator, {"Euler", "implicit"});
+  yaml.Read("solver", p.solver, {"Newton", "CG", "PGS"});
+  yaml.Read("iterations", p.iterations, {1, 1000});
+  yaml.Read("cone", p.cone, {"elliptic", "pyramidal"});
+  yaml.Read("impratio", p.impratio, {0.1, 1000});
+  yaml.Read("noslip_iterations", p.noslip_iterations, {0, 1000});
+  yaml.Read("condim", p.condim, {3, 6});
+  ThrowUnless(p.condim != 5, "{}: condim is 5, expected 3, 4 or 6", yaml.Where("condim"));
+  yaml.Read("torsional_friction", p.torsional_friction, kFraction);
+  yaml.Read("rolling_friction", p.rolling_friction, kFraction);
+  yaml.Read("solref", p.solref, {1e-4, 10});
+  ThrowUnless(p.solref.size() == 2,
+              "{}: solref has {} numbers, expected 2 (time constant, "
+              "damping ratio)",
+              yaml.Where("solref"), p.solref.size());
+  yaml.Read("solimp", p.solimp, {1e-5, 1});
+  ThrowUnless(p.solimp.size() == 3, "{}: solimp has {} numbers, expected 3 (least, most, width)",
+              yaml.Where("solimp"), p.solimp.size());
+  yaml.Finish();
+}
+
+// Two lamps, and two overview cameras: one sees robot and table, one the first object.
+void FillDefaultView(Scene& scene) {
+  const Eigen::Vector3d top(scene.table.position.x(), scene.table.position.y(), scene.table.height);
+  if (scene.lights.empty()) {
+    scene.lights = {{top + Eigen::Vector3d(0.6, 1.2, 2.0), top, 0.55, true},
+                    {top + Eigen::Vector3d(-1.2, 0.6, 2.0), top, 0.35, false}};
+  }
+  if (!scene.cameras.empty()) return;
+  Eigen::Vector3d target = top;
+  if (!scene.objects.empty()) target = ObjectStartPose(scene, 0).translation();
+  scene.cameras = {{"front", top + Eigen::Vector3d(0.75, 1.55, 0.65),
+                    top + Eigen::Vector3d(-0.2, -0.3, 0.15), 42},
+                   {"close", target + Eigen::Vector3d(0.42, 0.42, 0.22),
+                    target + Eigen::Vector3d(0, -0.03, 0.05), 40}};
+}
+
+Scene ReadSceneFrom(YamlReader yaml, const std::string& name) {
+  Scene scene;
+  scene.source = name;
+  yaml.Read("robot", scene.robot);
+  yaml.Read("hand", scene.hand);
+  ThrowUnless(scene.hand == "documented",
+              "{}: hand is '{}', expected documented (the variant with an opposition joint is not "
+              "part of the robot model)",
+              yaml.Where("hand"), scene.hand);
+  yaml.Read("active", scene.active);
+  const std::set<std::string> subsystems = {"platform",   "torso",    "head",     "right_arm",
+                                            "right_hand", "left_arm", "left_hand"};
+  for (const std::string& s : scene.active) {
+    ThrowUnless(subsystems.count(s) > 0, "{}: active holds '{}', expected some of {}",
+                yaml.Where("active"), s, fmt::join(subsystems, ", "));
+  }
+  YamlReader start = yaml.Child("start");
+  for (const std::string& joint : start.Keys()) start.Read(joint, scene.start[joint], kAngle);
+  start.Finish();
+  yaml.Read("torso", scene.torso, {"fixed", "free"});
+  ReadTable(yaml.Child("table"), scene.table);
+  std::set<std::string> names;
+  for (YamlReader& child : yaml.Children("objects")) {
+    scene.objects.push_back(ReadObject(child, name));
+    ThrowUnless(names.insert(scene.objects.back().name).second, "{}: a second object is named '{}'",
+                child.Where("name"), scene.objects.back().name);
+  }
+  yaml.Read("max_finger_force", scene.max_finger_force, {0.1, 100});
+  for (YamlReader& child : yaml.Children("lights")) scene.lights.push_back(ReadLight(child));
+  for (YamlReader& child : yaml.Children("cameras")) scene.cameras.push_back(ReadCamera(child));
+  ReadDemonstrator(yaml.Child("demonstrator"), name, scene.demonstrator);
+  ReadPhysics(yaml.Child("physics"), scene.physics);
+  yaml.Finish();
+  FillDefaultView(scene);
+  return scene;
+}
+
+}  // namespace
+
+Scene ReadScene(const std::string& path) { return ReadSceneFrom(YamlReader::FromFile(path), path); }
+
+Scene ParseScene(const std::string& yaml_text, const std::string& name) {
+  return ReadSceneFrom(YamlReader::FromText(yaml_text, name), name);
+}
+
+}  // namespace springgrasp
