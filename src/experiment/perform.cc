@@ -1,0 +1,439 @@
+#include "experiment/perform.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "control/grip.h"
+#include "experiment/arm_reference.h"
+#include "sim/model_index.h"
+
+namespace springgrasp {
+namespace {
+
+constexpr double kGravity = 9.81;        // m/s^2
+constexpr double kLostAfter = 0.2;       // s without any hand contact: the object is lost
+constexpr double kLostBeyond = 0.08;     // m moved in the hand: the object is lost
+constexpr double kMinRise = 0.5;         // of the lift height, that the object must have risen
+constexpr double kOpposedWindow = 0.02;  // s, to see the first opposed contact
+constexpr double kGripWindow = 0.25;     // s, to see whether a finger touches at the end of grip
+
+double TiltDeg(const Pose& a, const Pose& b) {
+  return RotationDistance(Eigen::Quaterniond(a.linear()), Eigen::Quaterniond(b.linear())) * 180 /
+         std::numbers::pi;
+}
+
+// One trial under way: references, controllers, bookkeeping.
+class Performer {
+ public:
+  Performer(Simulation& simulation, const RobotIo& robot, const std::string& object,
+            const KinematicTree& hand, const KinematicTree& arm, const GraspPlan& plan,
+            const PerformOptions& options, const StepObserver& observer)
+      : simulation_(simulation),
+        robot_(robot),
+        object_name_(object),
+        object_(IdOf(simulation.model(), mjOBJ_BODY, object)),
+        hand_(hand),
+        arm_(arm),
+        plan_(plan),
+        options_(options),
+        criteria_(options.criteria),
+        observer_(observer),
+        roles_(ClassifyGeoms(simulation.model())),
+        window_(roles_, object_),
+        opposed_window_(roles_, object_) {
+    for (int f = 0; f < kNumFingers; ++f) {
+      tip_frames_[f] = hand.FrameIndex(fmt::format("hand_r_{}_tip", kFingerNames[f]));
+    }
+    arm_frame_ = arm.FrameIndex("hand_r_H");
+    const Pose X_WO = ObjectPose();
+    X_WO_start_ = X_WO;
+  }
+
+  Performance Run() {
+    Settle() && Reach() && Grip() && Lift() && Hold() && Disturb() && After();
+    performance_.duration = simulation_.time();
+    return std::move(performance_);
+  }
+
+ private:
+  Pose ObjectPose() const {
+    return ReadBodyState(simulation_.model(), simulation_.data(), object_).X_WB;
+  }
+  Pose ObjectInHand() const { return robot_.HandPose(simulation_).inverse() * ObjectPose(); }
+
+  void Record(Outcome outcome, const std::string& message) {
+    performance_.events.push_back({simulation_.time(), outcome, message});
+  }
+
+  HandVector GripTorque(const RobotState& state) const {
+    const GripOptions& grip = options_.grip;
+    if (plan_.type == "power") {
+      EnclosingGrip enclosing;
+      enclosing.involved = plan_.involved;
+      const PneumaticHandModel model;
+      enclosing.proximal = grip.enclosing_pressure * model.torque_per_bar[1];
+      enclosing.distal = grip.distal_ratio * enclosing.proximal;
+      enclosing.palm = 0.5 * enclosing.proximal;
+      return EnclosingGripTorque(enclosing);
+    }
+    FingertipGrip fingertip;
+    fingertip.involved = plan_.involved;
+    fingertip.force =
+        std::max(grip.min_force, GripForceFor(plan_.mass, plan_.friction, grip.acceleration,
+                                              grip.safety, options_.max_finger_force));
+    return FingertipGripTorque(hand_, tip_frames_, state.hand_q, fingertip);
+  }
+
+  // Torques that carry the believed load: J' (m g) at the object's place in the hand.
+  ArmVector LoadTorque(const RobotState& state) const {
+    std::vector<Pose> X_WB;
+    ForwardKinematics(arm_, state.arm_q, X_WB);
+    Eigen::MatrixXd J(6, arm_.num_joints());
+    FrameJacobian(arm_, X_WB, arm_frame_, J);
+    const Eigen::Vector3d lever =
+        FramePose(arm_, X_WB, arm_frame_).linear() * plan_.X_HO.translation();
+    const Eigen::Vector3d force(0, 0, plan_.mass * kGravity);
+    return J.topRows<3>().transpose() * force + J.bottomRows<3>().transpose() * lever.cross(force);
+  }
+
+  // One control and simulation step. `grip` in [0, 1] scales the grip, `load` the carried load.
+  // Returns false when the trial is over.
+  bool Step(const ArmTarget& arm_target, const HandVector& hand_q, double grip, double load) {
+    const double dt = simulation_.timestep();
+    const RobotState state = robot_.Read(simulation_);
+    RobotCommand command;
+    ArmTarget target = arm_target;
+    if (load > 0) target.feedforward_torque = load * LoadTorque(state);
+    command.arm_torque = ControlArm(options_.arm, target, state, dt, arm_memory_);
+    HandTarget hand_target;
+    hand_target.q = hand_q;
+    if (grip > 0) {
+      hand_target.torque = grip * GripTorque(state);
+      hand_target.integrate = false;
+      if (plan_.type == "power") {
+        // Enclosing fingers yield to the object's shape: no stiffness about the planned posture.
+        for (int f = 0; f < kNumFingers; ++f) {
+          if (!plan_.involved[f]) continue;
+          for (int j = 1 + 2 * f; j <= 2 + 2 * f; ++j) {
+            hand_target.q[j] = (1 - grip) * hand_q[j] + grip * state.hand_q[j];
+          }
+        }
+      }
+    }
+    command.valve_pressure =
+        ControlHand(hand_model_, options_.hand, hand_target, state, dt, hand_memory_);
+    robot_.Write(command, simulation_);
+    simulation_.Step();
+    if (simulation_.diverged()) {
+      Record(Outcome::kDiverged, simulation_.diverged()->warning);
+      return false;
+    }
+    Watch(dt);
+    Sample(state, command);
+    if (observer_) observer_(simulation_, performance_.reached);
+    return over_ == false;
+  }
+
+  // Everything that is looked at after every step.
+  void Watch(double dt) {
+    const Pose X_WO = ObjectPose();
+    const Pose X_WH = robot_.HandPose(simulation_);
+    const double torsion = simulation_.model().geom_friction[1];
+    window_.Add(simulation_.contacts(), X_WO, X_WH, torsion, dt);
+    WatchTable();
+    if (!opposed_) WatchFirstContact(X_WO, X_WH, torsion, dt);
+    if (performance_.reached >= Phase::kLift) WatchHeld(X_WO, X_WH, dt);
+  }
+
+  void WatchTable() {
+    double tips = 0, others = 0;
+    for (const ContactPoint& c : simulation_.contacts()) {
+      const GeomRole &a = roles_[c.geom1], &b = roles_[c.geom2];
+      const auto is_support = [](const GeomRole& r) {
+        return r.part == GeomPart::kTable || r.part == GeomPart::kRing ||
+               r.part == GeomPart::kFloor;
+      };
+      const GeomRole& robot_part = is_support(a) ? b : a;
+      if (is_support(a) == is_support(b)) continue;
+      if (robot_part.part == GeomPart::kFinger && robot_part.phalanx == 1)
+        tips += c.normal_force;
+      else if (robot_part.hand() || robot_part.part == GeomPart::kArm)
+        others += c.normal_force;
+    }
+    if (tips > criteria_.max_tip_table_force || others > criteria_.max_table_force) {
+      Record(Outcome::kCollided,
+             fmt::format("table or ring touched with {:.1f} N in {}", std::max(tips, others),
+                         PhaseName(performance_.reached)));
+      over_ = true;
+    }
+  }
+
+  void WatchFirstContact(const Pose& X_WO, const Pose& X_WH, double torsion, double dt) {
+    opposed_window_.Add(simulation_.contacts(), X_WO, X_WH, torsion, dt);
+    const double moved = (X_WO.translation() - X_WO_start_.translation()).norm();
+    const double tilt = TiltDeg(X_WO, X_WO_start_);
+    if (performance_.reached > Phase::kSettle &&
+        (moved > criteria_.max_early_motion || tilt > criteria_.max_early_tilt_deg)) {
+      Record(Outcome::kCollided,
+             fmt::format("object moved {:.0f} mm and tilted {:.0f} degrees before the first "
+                         "opposed contact, in {}",
+                         1e3 * moved, tilt, PhaseName(performance_.reached)));
+      over_ = true;
+      return;
+    }
+    const ContactWindow window = opposed_window_.Mean();
+    if (window.duration >= kOpposedWindow) {
+      opposed_ = IsOpposed(window, criteria_);
+      opposed_window_.Clear();
+    }
+  }
+
+  // Slip since the end of the grip, and whether the object is still there.
+  void WatchHeld(const Pose& X_WO, const Pose& X_WH, double dt) {
+    const Pose X_HO = X_WH.inverse() * X_WO;
+    const double slip = (X_HO.translation() - X_HO_grip_.translation()).norm();
+    const double rotation = RotationDistance(Eigen::Quaterniond(X_HO.linear()),
+                                             Eigen::Quaterniond(X_HO_grip_.linear()));
+    performance_.slip = std::max(performance_.slip, slip);
+    performance_.rotation = std::max(performance_.rotation, rotation);
+    if (!slipped_ &&
+        (slip > criteria_.max_slip || rotation * 180 / std::numbers::pi > criteria_.max_slip_deg)) {
+      slipped_ = true;
+      slip_event_ = {
+          simulation_.time(), Outcome::kSlipped,
+          fmt::format("{:.0f} mm and {:.0f} degrees in the hand, in {}", 1e3 * slip,
+                      rotation * 180 / std::numbers::pi, PhaseName(performance_.reached))};
+    }
+    const bool touched = std::any_of(simulation_.contacts().begin(), simulation_.contacts().end(),
+                                     [&](const ContactPoint& c) {
+                                       return (c.body1 == object_ && roles_[c.geom2].hand()) ||
+                                              (c.body2 == object_ && roles_[c.geom1].hand());
+                                     });
+    untouched_ = touched ? 0 : untouched_ + dt;
+    if (untouched_ > kLostAfter || slip > kLostBeyond) Dropped("the hand lost the object");
+  }
+
+  void Dropped(const std::string& message) {
+    if (over_) return;
+    const Phase phase = performance_.reached;
+    const Outcome outcome = phase == Phase::kLift   ? Outcome::kDroppedLift
+                            : phase == Phase::kHold ? Outcome::kDroppedHold
+                                                    : Outcome::kDroppedDisturb;
+    // A fall begins as a slip; the fall is what counts.
+    slipped_ = false;
+    Record(outcome, message);
+    over_ = true;
+  }
+
+  void Sample(const RobotState& state, const RobotCommand& command) {
+    if (simulation_.time() < next_sample_ - 1e-9) return;
+    next_sample_ += options_.sample_dt;
+    TrajectorySample sample;
+    sample.t = simulation_.time();
+    sample.phase = performance_.reached;
+    sample.X_WO = ObjectPose();
+    sample.X_WH = robot_.HandPose(simulation_);
+    sample.X_WH_planned = planned_;
+    const HandLoad load = LoadOnBody(simulation_.contacts(), roles_, object_);
+    for (int f = 0; f < kNumFingers; ++f) {
+      sample.p_WF[f] = robot_.Fingertip(simulation_, f);
+      sample.normal[f] = load.normal[f];
+    }
+    sample.palm_normal = load.palm_normal;
+    sample.state = state;
+    sample.command = command;
+    performance_.trajectory.push_back(sample);
+  }
+
+  long StepsFor(double duration) const { return std::lround(duration / simulation_.timestep()); }
+  void Enter(Phase phase) { performance_.reached = phase; }
+  ArmTarget Rest(const ArmVector& q) const {
+    ArmTarget target;
+    target.q = q;
+    return target;
+  }
+
+  bool Settle() {
+    Enter(Phase::kSettle);
+    planned_ = plan_.X_WH.front();
+    for (long i = 0; i < StepsFor(criteria_.settle); ++i) {
+      if (!Step(Rest(plan_.arm.front()), plan_.hand.front(), 0, 0)) return false;
+    }
+    X_WO_start_ = ObjectPose();
+    return true;
+  }
+
+  bool Reach() {
+    Enter(Phase::kReach);
+    const double end = plan_.dt * static_cast<double>(plan_.arm.size() - 1);
+    double arm_sum = 0, finger_sum = 0;
+    long fingers = 0;
+    const long steps = StepsFor(end);
+    for (long i = 0; i < steps; ++i) {
+      const double t = static_cast<double>(i) * simulation_.timestep();
+      const std::size_t k = std::min(plan_.arm.size() - 1, static_cast<std::size_t>(t / plan_.dt));
+      planned_ = plan_.X_WH[k];
+      if (!Step(ArmReferenceAt(plan_.arm, plan_.dt, t), HandReferenceAt(plan_.hand, plan_.dt, t), 0,
+                0)) {
+        return false;
+      }
+      const Pose X_WH = robot_.HandPose(simulation_);
+      arm_sum += (X_WH.translation() - planned_.translation()).squaredNorm();
+      if (t > plan_.T) continue;
+      for (int f = 0; f < kNumFingers; ++f) {
+        if (!plan_.involved[f]) continue;
+        finger_sum += (X_WH.inverse() * robot_.Fingertip(simulation_, f) -
+                       planned_.inverse() * plan_.p_WF[k][f])
+                          .squaredNorm();
+        ++fingers;
+      }
+    }
+    const Pose X_WH = robot_.HandPose(simulation_);
+    performance_.arm_error = std::sqrt(arm_sum / static_cast<double>(std::max(1L, steps)));
+    performance_.finger_error = std::sqrt(finger_sum / static_cast<double>(std::max(1L, fingers)));
+    performance_.end_error = (X_WH.translation() - plan_.X_WH.back().translation()).norm();
+    return true;
+  }
+
+  bool Grip() {
+    Enter(Phase::kGrip);
+    planned_ = plan_.X_WH.back();
+    const double ramp = options_.grip.ramp;
+    for (long i = 0; i < StepsFor(criteria_.grip); ++i) {
+      const double t = static_cast<double>(i) * simulation_.timestep();
+      if (t <= criteria_.grip - kGripWindow) window_.Clear();
+      if (!Step(Rest(plan_.arm.back()), plan_.hand.back(), std::clamp(t / ramp, 1e-3, 1.0), 0)) {
+        return false;
+      }
+    }
+    performance_.grip = window_.Mean();
+    X_HO_grip_ = ObjectInHand();
+    for (int f = 0; f < kNumFingers; ++f) {
+      if (!plan_.involved[f] || performance_.grip.normal[f] >= criteria_.contact_force) continue;
+      Record(Outcome::kMissed,
+             fmt::format("{} does not touch at the end of grip", kFingerNames[f]));
+      return false;
+    }
+    return true;
+  }
+
+  bool Lift() {
+    Enter(Phase::kLift);
+    const double start = ObjectPose().translation().z();
+    for (long i = 0; i < StepsFor(criteria_.lift); ++i) {
+      const double t = static_cast<double>(i) * simulation_.timestep();
+      window_.Clear();
+      if (!Step(ArmReferenceAt(plan_.lift, plan_.dt, t), plan_.hand.back(), 1,
+                std::min(1.0, t / (0.2 * criteria_.lift)))) {
+        return false;
+      }
+    }
+    const double risen = ObjectPose().translation().z() - start;
+    if (risen < kMinRise * criteria_.lift_height || window_.Mean().support_normal > 0) {
+      Dropped(fmt::format("object risen by {:.0f} mm only", 1e3 * risen));
+      return false;
+    }
+    return true;
+  }
+
+  bool Hold() {
+    Enter(Phase::kHold);
+    const double quiet = 0.5;  // s, let the lift die out before creep is measured
+    Eigen::Vector3d p_HO_quiet = ObjectInHand().translation();
+    for (long i = 0; i < StepsFor(criteria_.hold); ++i) {
+      const double t = static_cast<double>(i) * simulation_.timestep();
+      if (t <= quiet) p_HO_quiet = ObjectInHand().translation();
+      if (t <= criteria_.hold - criteria_.window) window_.Clear();
+      if (!Step(Rest(plan_.lift.back()), plan_.hand.back(), 1, 1)) return false;
+    }
+    performance_.creep =
+        (ObjectInHand().translation() - p_HO_quiet).norm() / std::max(0.1, criteria_.hold - quiet);
+    performance_.hold = window_.Mean();
+    return true;
+  }
+
+  bool Disturb() {
+    Enter(Phase::kDisturb);
+    const double force = criteria_.force_per_mass * simulation_.model().body_mass[object_];
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double sign : {1.0, -1.0}) {
+        simulation_.ApplyForce(object_name_, sign * force * Eigen::Vector3d::Unit(axis));
+        for (long i = 0; i < StepsFor(criteria_.force_duration); ++i) {
+          if (!Step(Rest(plan_.lift.back()), plan_.hand.back(), 1, 1)) return false;
+        }
+      }
+    }
+    simulation_.ApplyForce(object_name_, Eigen::Vector3d::Zero());
+    performance_.shake_fraction = 1e9;
+    for (int axis = 0; axis < 3; ++axis) {
+      double low = 1e9, high = -1e9;
+      for (long i = 0; i < StepsFor(criteria_.shake_duration); ++i) {
+        const double t = static_cast<double>(i) * simulation_.timestep();
+        if (!Step(ArmReferenceAt(plan_.shake[axis], plan_.dt, t), plan_.hand.back(), 1, 1)) {
+          return false;
+        }
+        const double x = robot_.HandPose(simulation_).translation()[axis];
+        low = std::min(low, x);
+        high = std::max(high, x);
+      }
+      performance_.shake_fraction =
+          std::min(performance_.shake_fraction, (high - low) / 2 / criteria_.shake_amplitude);
+    }
+    return true;
+  }
+
+  bool After() {
+    Enter(Phase::kAfter);
+    window_.Clear();
+    for (long i = 0; i < StepsFor(criteria_.after); ++i) {
+      if (!Step(Rest(plan_.lift.back()), plan_.hand.back(), 1, 1)) return false;
+    }
+    performance_.after = window_.Mean();
+    if (slipped_) performance_.events.push_back(slip_event_);
+    if (performance_.shake_fraction < criteria_.min_shake_fraction) {
+      Record(Outcome::kError, fmt::format("the arm reached {:.0f} % of the shaking amplitude only",
+                                          100 * performance_.shake_fraction));
+    }
+    for (const ContactWindow* window : {&performance_.hold, &performance_.after}) {
+      const ContactCheck check = CheckContacts(plan_.type, *window, plan_.shape, criteria_);
+      if (!check.ok) Record(Outcome::kWrongContacts, check.reason);
+    }
+    Enter(Phase::kDone);
+    return true;
+  }
+
+  Simulation& simulation_;
+  const RobotIo& robot_;
+  const std::string object_name_;
+  const int object_;
+  const KinematicTree &hand_, &arm_;
+  const GraspPlan& plan_;
+  const PerformOptions& options_;
+  const TrialCriteria& criteria_;
+  const StepObserver& observer_;
+  const std::vector<GeomRole> roles_;
+  const PneumaticHandModel hand_model_;
+  ContactAccumulator window_, opposed_window_;
+  PerFinger<int> tip_frames_;
+  int arm_frame_ = 0;
+  ArmControlState arm_memory_;
+  HandControlState hand_memory_;
+  Performance performance_;
+  Pose X_WO_start_, X_HO_grip_, planned_;
+  TrialEvent slip_event_;
+  bool opposed_ = false, slipped_ = false, over_ = false;
+  double untouched_ = 0, next_sample_ = 0;
+};
+
+}  // namespace
+
+Performance Perform(Simulation& simulation, const RobotIo& robot, const std::string& object,
+                    const KinematicTree& hand, const KinematicTree& arm, const GraspPlan& plan,
+                    const PerformOptions& options, const StepObserver& observer) {
+  return Performer(simulation, robot, object, hand, arm, plan, options, observer).Run();
+}
+
+}  // namespace springgrasp
