@@ -1,0 +1,37 @@
+#include "experiment/arm_reference.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace springgrasp {
+namespace {
+
+TEST(ArmReferenceTest, GivesPositionVelocityAndAccelerationOfTheSampledPath) {
+  std::vector<ArmVector> path;
+  const double dt = 0.005;
+  for (int i = 0; i <= 200; ++i) path.push_back(ArmVector::Constant(std::sin(3 * i * dt)));
+  for (const double t : {0.2, 0.333, 0.5, 0.71}) {
+    const ArmTarget target = ArmReferenceAt(path, dt, t);
+    EXPECT_NEAR(target.q[3], std::sin(3 * t), 1e-4);
+    EXPECT_NEAR(target.qd[3], 3 * std::cos(3 * t), 1e-3);
+    EXPECT_NEAR(target.qdd[3], -9 * std::sin(3 * t), 1e-2);
+  }
+}
+
+TEST(ArmReferenceTest, RestsBeyondTheEnd) {
+  const std::vector<ArmVector> path(10, ArmVector::Constant(0.4));
+  const ArmTarget target = ArmReferenceAt(path, 0.01, 5);
+  EXPECT_EQ(target.q[0], 0.4);
+  EXPECT_EQ(target.qd[0], 0);
+  EXPECT_EQ(target.qdd[0], 0);
+}
+
+TEST(ArmReferenceTest, HandAnglesAreInterpolated) {
+  const std::vector<HandVector> path = {HandVector::Constant(0), HandVector::Constant(1)};
+  EXPECT_NEAR(HandReferenceAt(path, 0.1, 0.025)[2], 0.25, 1e-12);
+  EXPECT_EQ(HandReferenceAt(path, 0.1, 9)[2], 1);
+}
+
+}  // namespace
+}  // namespace springgrasp
