@@ -15,11 +15,11 @@ struct KinematicTree {
   // A body. Its pose in the root R: X_RB = X_RP * X_PB * motion(axis, q[joint]).
   struct Node {
     std::string name;
-    int parent = -1;                                     // -1: the root R; parents stand first
-    Pose X_PB = Pose::Identity();                        // at q = 0, m
-    int joint = -1;                                      // index into q; -1: fixed to its parent
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();     // in B, through B's origin
-    bool slide = false;                                  // hinge (rad) or slide (m)
+    int parent = -1;                                  // -1: the root R; parents stand first
+    Pose X_PB = Pose::Identity();                     // at q = 0, m
+    int joint = -1;                                   // index into q; -1: fixed to its parent
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // in B, through B's origin
+    bool slide = false;                               // hinge (rad) or slide (m)
   };
   // A named frame fixed to a body (a site).
   struct Frame {

@@ -1,0 +1,56 @@
+// Robot finger joints from a human hand: the similarity of joint angles and fingertip position,
+// minimised by Levenberg-Marquardt under joint bounds (Eq. 14-16).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "base/fingers.h"
+#include "base/pose.h"
+#include "kinematics/human_hand.h"
+#include "kinematics/robot_hand.h"
+
+namespace springgrasp {
+
+// What the robot hand should resemble at one instant.
+struct MappingTarget {
+  PerFinger<Eigen::Vector2d> sigma;  // wanted j0, j1, rad (already clipped to the joint ranges)
+  PerFinger<Eigen::Vector3d> p_HF;   // wanted tips in the robot's H, m
+  PerFinger<double> lambda;          // weight of the position term (Eq. 14: 1)
+};
+
+// Residual rows (n = 2 joints per finger):
+//   2 per finger  (sigma_wanted - sigma) / (pi sqrt(n))                             Eq. 14
+//   3 per finger  sqrt(lambda) (p_wanted - p) / (2 l_finger sqrt(3))                Eq. 14
+//   palm          palm_weight (q_palm - palm_wanted) / pi                           ours
+//   6 per valve of four joints   coupling_weight (q_a - q_b) / pi                   ours
+//   11            smoothness (q - q_previous) / pi, if warm-started                 ours, off
+struct MappingOptions {
+  double palm_weight = 1;
+  double palm_wanted = 0;        // rad
+  double coupling_weight = 0.1;  // joints of one valve feel equal torque, so about equal angles
+  double smoothness = 0;
+  int max_iterations = 60;
+};
+
+struct MappingResult {
+  Eigen::VectorXd q;                 // 11 angles, within their ranges, rad
+  double cost = 0;                   // S' of Eq. 15 summed over fingers, plus our own rows
+  PerFinger<double> tip_error = {};  // m
+};
+
+// Wanted joint angles and tips of the human posture: sigma by FlexionOf plus the hand's offsets,
+// clipped; tips scaled by finger length about the base joints. lambda = 1.
+MappingTarget TargetFromHuman(const HumanHand& human, const Eigen::VectorXd& q_human,
+                              const RobotHand& robot);
+
+// `previous` warm-starts (empty: starts from sigma).
+MappingResult MapHand(const RobotHand& robot, const MappingTarget& target,
+                      const Eigen::VectorXd& previous = {}, const MappingOptions& options = {});
+
+// The same problem by NLopt (SLSQP) from several deterministic starts: the yardstick of tests.
+MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target, int starts,
+                             const MappingOptions& options = {});
+
+}  // namespace springgrasp

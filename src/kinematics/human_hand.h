@@ -1,0 +1,33 @@
+// The MMM hand (21 joints) as kinematics: the intermediate hand model of paper section III-C.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "base/fingers.h"
+#include "kinematics/kinematic_tree.h"
+
+namespace springgrasp {
+
+struct HumanHand {
+  KinematicTree tree;                  // root: H
+  PerFinger<std::vector<int>> joints;  // from the wrist to the tip, indices into q
+  PerFinger<int> base = {};            // node of the knuckle (thumb: CMC), where flexion begins
+  PerFinger<int> tip = {};             // frame of the pad sphere's centre
+  PerFinger<double> length = {};       // base to tip centre at q = 0, m
+  Eigen::VectorXd rest;                // relaxed posture, rad: fingers that were not seen
+};
+
+// From the tree below body `mmm_hand` (its frame is H). Joints are found by their MMM names.
+// Throws Error if one is missing.
+HumanHand MakeHumanHand(KinematicTree tree);
+
+// Flexion angles that Eq. 14 compares, rad. Thumb: CMC flexion + MCP (from straight out of the
+// palm plane's 45 degrees), IP. Fingers: MCP, PIP + DIP.
+struct FlexionAngles {
+  double proximal = 0;
+  double distal = 0;
+};
+PerFinger<FlexionAngles> FlexionOf(const HumanHand& hand, const Eigen::VectorXd& q);
+
+}  // namespace springgrasp

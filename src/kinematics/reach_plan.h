@@ -1,0 +1,75 @@
+// Choosing what a grasp leaves free so that the arm can do it, and the arm's path.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/pose.h"
+#include "base/shape.h"
+#include "kinematics/arm_ik.h"
+#include "kinematics/robot_hand.h"
+
+namespace springgrasp {
+
+struct ReachRequest {
+  Shape shape;
+  Pose X_WO = Pose::Identity();         // believed object pose
+  Pose X_HO = Pose::Identity();         // object in the robot's hand at contact
+  Pose X_HG = Pose::Identity();         // robot's grasp frame at contact
+  bool tilt_free = true;                // fingertip grasps: tilt about the contact line
+  double table_height = 0;              // m, world
+  double dt = 0.005;                    // s
+  double T = 1;                         // s, contact
+  std::vector<Eigen::VectorXd> q_hand;  // hand joints at the path's samples, rad
+  // The hand's path for an object posed at X_WO * X_OF (F: the free motion of the grasp about the
+  // object, identity: as demonstrated). Its last poses must be X_WO * X_OF * X_HO^-1.
+  std::function<std::vector<Pose>(const Pose& X_OF)> path;
+};
+
+struct ReachOptions {
+  double yaw_step = 0.17453292519943295;  // rad, 10 degrees
+  double max_tilt = 0.3490658503988659;   // rad, 20 degrees
+  double clearance = 0.010;               // m, of hand and forearm above the table
+  double lift = 0.15;                     // m
+  double shake = 0.020;                   // m, along each axis
+  double shake_frequency = 2;             // Hz
+  double shake_duration = 1;              // s, per axis
+  double lift_duration = 1.5;             // s
+  int path_candidates = 12;               // how many goals get a whole path
+  double max_joint_speed = 2.5;           // rad/s
+};
+
+struct ReachPlan {
+  bool reachable = false;
+  std::string reason;                 // one line when not reachable
+  Pose X_OF = Pose::Identity();       // the choice
+  std::vector<Pose> X_WH;             // hand path with via height, at dt
+  std::vector<Eigen::VectorXd> arm;   // joint angles, rad, same samples
+  std::vector<Eigen::VectorXd> lift;  // from the end of the reach straight up, at dt
+  std::array<std::vector<Eigen::VectorXd>, 3> shake;  // about the lifted pose, along W's axes
+  double limit_margin = 0;        // smallest over the path, 0..1 (see LimitMargin)
+  double table_clearance = 0;     // m, smallest of hand and forearm over the path
+  double via_raise = 0;           // m, added in the middle of the path
+  int candidates = 0, goals = 0;  // tried, and reached at the goal
+};
+
+// Rotations F about O that leave the shape (and so the contacts) as they are: sphere: about the
+// vertical and about the contact line; cylinder: about its axis; box: half turns (quarter turns if
+// square) about z; times tilts about the contact line within max_tilt for fingertip grasps. The
+// demonstrated one (identity) is first, then by growing deviation.
+std::vector<Pose> FreeMotions(const ReachRequest& request, const ReachOptions& options = {});
+
+// Evaluates all candidates at the goal (reached, lifted pose reached, limits, clearance), then
+// plans whole paths for the best until one succeeds. Deterministic.
+ReachPlan PlanReach(const Arm& arm, const RobotHand& hand, const ReachRequest& request,
+                    const ReachOptions& options = {});
+
+// Hand poses raised in the middle so that the hand (capsules at q_hand) stays `clearance` above
+// the table: z is lifted by raise * bump(t), 0 at both ends. Returns the raise, m.
+double RaisePath(const RobotHand& hand, const std::vector<Eigen::VectorXd>& q_hand,
+                 double table_height, double clearance, std::vector<Pose>& X_WH);
+
+}  // namespace springgrasp
