@@ -54,9 +54,9 @@ BODIES = [
 
 HAND_MASS = {"hand_r": 0.2, "hand_r_palm": 0.1, "j0": 0.012, "j1": 0.018}
 
-# Twice the largest gravity torque over the arm's and torso's ranges, hand empty, rounded up (see the README).
-ARM_TORQUE = {"shoulder1": 70.0, "shoulder2": 70.0, "upperarm": 36.0, "elbow": 36.0, "underarm": 10.0, "wrist1": 2.0,
-              "wrist2": 2.0}
+# Twice the largest gravity torque over the ranges of arm and hand with 1 kg at the TCP, rounded up (see the README).
+ARM_TORQUE = {"shoulder1": 68.0, "shoulder2": 68.0, "upperarm": 26.0, "elbow": 24.0, "underarm": 4.0, "wrist1": 4.0,
+              "wrist2": 4.0}
 
 EXCLUDES = [  # pairs that overlap by construction, besides parent and child
     ("armar3b", "torso_roll", "published"),
