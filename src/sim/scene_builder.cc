@@ -97,6 +97,13 @@ void FillStartKey(const Scene& scene, mjModel& model) {
     if (type == mjJNT_FREE || type == mjJNT_BALL) continue;
     qpos[model.jnt_qposadr[j]] = StartPosition(scene, model, j);
   }
+  // Servos (position actuators) hold the posture in which they start.
+  for (int a = 0; a < model.nu; ++a) {
+    if (model.actuator_biastype[a] != mjBIAS_AFFINE || model.actuator_trntype[a] != mjTRN_JOINT) {
+      continue;
+    }
+    model.key_ctrl[key * model.nu + a] = StartPosition(scene, model, model.actuator_trnid[2 * a]);
+  }
   for (int b = 0; b < model.nbody; ++b) {
     const int mocap = model.body_mocapid[b];
     if (mocap < 0) continue;

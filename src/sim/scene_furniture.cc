@@ -111,6 +111,8 @@ void AddSettings(const Scene& scene, int offscreen_samples, XmlElement* root) {
   Set(option, "cone", p.cone);
   Set(option, "impratio", fmt::format("{}", p.impratio));
   option->SetAttribute("noslip_iterations", p.noslip_iterations);
+  // Without it a cylinder stands on one wandering contact point and trembles.
+  Set(ChildOf(option, "flag"), "multiccd", "enable");
   XmlElement* size = ChildOf(root, "size");
   size->SetAttribute("njmax", 1000);
   size->SetAttribute("nconmax", 200);

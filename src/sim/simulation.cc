@@ -45,7 +45,7 @@ void Simulation::Reset() {
 
 void Simulation::Forward() {
   contacts_.clear();
-  mj_step1(model_.get(), data_.get());
+  FirstHalf();
   Check();
 }
 
@@ -57,13 +57,19 @@ void Simulation::Step(int steps) {
       mj_step2(model_.get(), data_.get());
       ReadContacts(*model_, *data_, contacts_);
       if (!Check()) return;
-      mj_step1(model_.get(), data_.get());
+      FirstHalf();
     } catch (const Error& e) {
       divergence_ = Divergence{e.what(), data_->time};
       return;
     }
     Check();
   }
+}
+
+void Simulation::FirstHalf() {
+  Save(data_->qpos, model_->nq, raw_qpos_);
+  mj_step1(model_.get(), data_.get());
+  Save(data_->qpos, model_->nq, unit_qpos_);
 }
 
 bool Simulation::Check() {
@@ -86,7 +92,9 @@ void Simulation::SetControl(const std::string& actuator, double value) {
 Snapshot Simulation::TakeSnapshot() const {
   Snapshot s;
   s.time = data_->time;
-  Save(data_->qpos, model_->nq, s.qpos);
+  // The engine makes quaternions unit again on restoring, which is not idempotent to the last bit.
+  const bool untouched = std::equal(unit_qpos_.begin(), unit_qpos_.end(), data_->qpos);
+  Save(untouched ? raw_qpos_.data() : data_->qpos, model_->nq, s.qpos);
   Save(data_->qvel, model_->nv, s.qvel);
   Save(data_->act, model_->na, s.act);
   Save(data_->ctrl, model_->nu, s.ctrl);

@@ -62,11 +62,14 @@ class Simulation {
 
  private:
   bool Check();
+  void FirstHalf();
 
   ModelPtr model_;
   DataPtr data_;
   std::optional<Divergence> divergence_;
   std::vector<ContactPoint> contacts_;
+  // Positions as integrated, and as the engine left them after making quaternions unit.
+  std::vector<double> raw_qpos_, unit_qpos_;
 };
 
 // Pose of a body's frame and velocity of its centre of mass, in W.

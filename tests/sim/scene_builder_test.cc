@@ -1,0 +1,133 @@
+#include "sim/scene_builder.h"
+
+#include <gmock/gmock.h>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "sim/describe_model.h"
+#include "sim/model_index.h"
+#include "sim/sim_fixture.h"
+#include "sim/simulation.h"
+
+namespace springgrasp {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(SceneBuilderTest, ModelHasRobotTableObjectsAndCameras) {
+  const ModelPtr m = BuildModel(TestScene());
+  EXPECT_EQ(m->nq, 18 + 3 * 7);
+  EXPECT_EQ(m->nu, 15);
+  EXPECT_EQ(m->na, 8);
+  for (const char* body : {"table", "ball", "can", "block", "ball_ring", "hand_r_index_j1"}) {
+    EXPECT_GE(FindId(*m, mjOBJ_BODY, body), 0) << body;
+  }
+  for (const char* camera : {"front", "eye_l_wide", "eye_r_wide"}) {
+    EXPECT_GE(FindId(*m, mjOBJ_CAMERA, camera), 0) << camera;
+  }
+  EXPECT_GE(FindId(*m, mjOBJ_JOINT, "ball_free"), 0);
+  EXPECT_LT(FindId(*m, mjOBJ_JOINT, "torso_yaw"), 0);
+  EXPECT_EQ(m->nsensor, 1);
+  EXPECT_THAT(DescribeModel(*m), HasSubstr("arm_r_elbow"));
+}
+
+TEST(SceneBuilderTest, SameSceneGivesTheSameText) {
+  EXPECT_EQ(BuildMjcf(TestScene()), BuildMjcf(TestScene()));
+}
+
+TEST(SceneBuilderTest, FrozenJointsStandWhereTheyStarted) {
+  // Reference: the whole robot with all joints, put at the start posture.
+  Scene scene = TestScene();
+  const ModelPtr whole = LoadModelFile(scene.robot);
+  const DataPtr d = MakeData(*whole);
+  RandomEngine engine = MakeStream(1, 0, "frozen");
+  for (int k = 0; k < 5; ++k) {
+    for (int j = 0; j < whole->njnt; ++j) {
+      const double q = Uniform(engine, whole->jnt_range[2 * j], whole->jnt_range[2 * j + 1]);
+      d->qpos[whole->jnt_qposadr[j]] = q;
+      scene.start[NameOf(*whole, mjOBJ_JOINT, j)] = q;
+    }
+    mj_kinematics(whole.get(), d.get());
+    for (const std::vector<std::string>& active :
+         {std::vector<std::string>{}, {"right_hand"}, {"head", "right_arm", "right_hand"}}) {
+      scene.active = active;
+      Simulation sim(BuildModel(scene));
+      for (int b = 1; b < whole->nbody; ++b) {
+        const std::string name = NameOf(*whole, mjOBJ_BODY, b);
+        const Pose X = BodyPose(sim.model(), sim.data(), name);
+        EXPECT_TRUE(X.isApprox(BodyPose(*whole, *d, name), 1e-9)) << name;
+      }
+    }
+  }
+}
+
+TEST(SceneBuilderTest, FreezingKeepsMassAndDropsWhatActedOnTheJoints) {
+  Scene scene = TestScene();
+  scene.objects.clear();
+  const ModelPtr active = BuildModel(scene);
+  scene.active.clear();
+  const ModelPtr frozen = BuildModel(scene);
+  EXPECT_EQ(frozen->njnt, 0);
+  EXPECT_EQ(frozen->nu, 0);
+  EXPECT_EQ(frozen->ntendon, 0);
+  EXPECT_EQ(frozen->nsensor, 0);
+  EXPECT_NEAR(frozen->body_subtreemass[0], active->body_subtreemass[0], 1e-9);
+}
+
+TEST(SceneBuilderTest, ShoulderDoesNotCollideWithTheFixedTorso) {
+  // The shoulder's capsule reaches into the torso: neighbours, exempt while both moved.
+  Scene scene = TestScene();
+  scene.objects.clear();
+  Simulation sim(BuildModel(scene));
+  for (int i = 0; i < sim.data().ncon; ++i) {
+    const mjContact& c = sim.data().contact[i];
+    ADD_FAILURE() << NameOf(sim.model(), mjOBJ_BODY, sim.model().geom_bodyid[c.geom1]) << " and "
+                  << NameOf(sim.model(), mjOBJ_BODY, sim.model().geom_bodyid[c.geom2]);
+  }
+}
+
+TEST(SceneBuilderTest, DemonstratorIsPlacedAndTouchesNothing) {
+  BuildOptions options = TestDemonstrator();
+  options.shown_object = ParseShape("box:0.03x0.03x0.05");
+  Simulation sim(BuildModel(TestScene(), options));
+  const Pose X_WH = MakePose({0.3, 0.6, 0.95}, Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5));
+  sim.PlaceBody("mmm_hand", X_WH);
+  sim.PlaceBody("shown_object", X_WH);
+  sim.SetJoint("mmm_index_mcp", 0.7);
+  sim.Forward();
+  EXPECT_TRUE(SitePose(sim.model(), sim.data(), "mmm_H").isApprox(X_WH, 1e-12));
+  const int index = IdOf(sim.model(), mjOBJ_BODY, "mmm_index_1");
+  for (int i = 0; i < sim.data().ncon; ++i) {
+    for (int g : {sim.data().contact[i].geom1, sim.data().contact[i].geom2}) {
+      EXPECT_NE(sim.model().geom_bodyid[g], index);
+      EXPECT_THAT(NameOf(sim.model(), mjOBJ_BODY, sim.model().geom_bodyid[g]),
+                  Not(HasSubstr("mmm")));
+    }
+  }
+}
+
+TEST(SceneBuilderTest, WrongStartPosturesAreErrors) {
+  Scene scene = TestScene();
+  scene.start = {{"arm_r_knee", 0.1}};
+  EXPECT_THROW(BuildModel(scene), Error);
+  scene.start = {{"arm_r_elbow", -1}};
+  EXPECT_THROW(BuildModel(scene), Error);
+  scene.start.clear();
+  scene.robot = "nowhere.xml";
+  EXPECT_THROW(BuildModel(scene), Error);
+}
+
+TEST(SceneBuilderTest, BrokenModelIsAnErrorWithItsName) {
+  try {
+    LoadModelText("<mujoco><worldbody><body name='a'><geom size='-1'/></body></worldbody></mujoco>",
+                  "broken");
+    FAIL() << "expected an error";
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("broken"));
+    EXPECT_THAT(e.what(), Not(HasSubstr("\n")));
+  }
+}
+
+}  // namespace
+}  // namespace springgrasp

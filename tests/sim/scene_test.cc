@@ -1,0 +1,123 @@
+#include "sim/scene.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "sim/ring.h"
+#include "sim/sim_fixture.h"
+
+namespace springgrasp {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+std::string MessageOf(const std::string& yaml) {
+  try {
+    ParseScene(yaml, "scene.yaml");
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "(no error)";
+}
+
+TEST(SceneTest, EveryKeyIsRead) {
+  const Scene s = ReadScene(TestFile("sim_scene.yaml"));
+  ASSERT_EQ(s.objects.size(), 3u);
+  EXPECT_EQ(s.objects[0].name, "ball");
+  EXPECT_EQ(s.objects[0].friction, 0.8);
+  EXPECT_TRUE(s.objects[0].on_ring);
+  EXPECT_EQ(s.objects[0].pose_noise.y, 0.02);
+  EXPECT_EQ(s.objects[0].believed.mass, -0.2);
+  EXPECT_EQ(s.objects[2].shape->kind, Shape::Kind::kBox);
+  EXPECT_EQ(s.start.at("torso_yaw"), 0.2);
+  EXPECT_EQ(s.demonstrator.type, "power");
+  EXPECT_FALSE(s.demonstrator.object_visible);
+  EXPECT_EQ(s.demonstrator.object->size.x(), 0.06);
+  EXPECT_EQ(s.physics.noslip_iterations, 3);
+  EXPECT_EQ(s.max_finger_force, 6);
+  EXPECT_EQ(s.lights.size(), 1u);
+}
+
+TEST(SceneTest, DefaultsGiveLightsAndTwoCameras) {
+  const Scene s = ParseScene("objects: [{shape: 'sphere:0.04', pose: [0.3, 0.6]}]", "s.yaml");
+  ASSERT_EQ(s.cameras.size(), 2u);
+  EXPECT_EQ(s.cameras[0].name, "front");
+  EXPECT_EQ(s.cameras[1].name, "close");
+  EXPECT_FALSE(s.lights.empty());
+}
+
+TEST(SceneTest, ErrorsNameFileLineAndWhatIsValid) {
+  EXPECT_THAT(MessageOf("torso: fixed\ntabel: {height: 1}\n"),
+              AllOf(HasSubstr("scene.yaml:2"), HasSubstr("tabel"), HasSubstr("table")));
+  EXPECT_THAT(MessageOf("objects:\n  - shape: sphere:0.04\n    mass: -0.1\n    pose: [0, 0.5]\n"),
+              AllOf(HasSubstr("scene.yaml:3"), HasSubstr("mass"), HasSubstr("-0.1")));
+  EXPECT_THAT(MessageOf("objects:\n  - shape: sphere:0.04\n    pose: [0]\n"),
+              AllOf(HasSubstr("scene.yaml:3"), HasSubstr("pose has 1 numbers")));
+  EXPECT_THAT(MessageOf("objects:\n  - shape: ball:0.04\n    pose: [0, 0.5]\n"),
+              AllOf(HasSubstr("scene.yaml:2"), HasSubstr("sphere:D")));
+  EXPECT_THAT(MessageOf("objects:\n  - pose: [0, 0.5]\n"), HasSubstr("either a shape or a model"));
+  EXPECT_THAT(MessageOf("hand: opposition\n"),
+              AllOf(HasSubstr("scene.yaml:1"), HasSubstr("documented")));
+  EXPECT_THAT(MessageOf("active: [right_leg]\n"),
+              AllOf(HasSubstr("scene.yaml:1"), HasSubstr("right_arm")));
+  EXPECT_THAT(MessageOf("demonstrator: {kind: recorded, file: nowhere.csv}\n"),
+              AllOf(HasSubstr("scene.yaml:1"), HasSubstr("nowhere.csv")));
+  EXPECT_THAT(MessageOf("objects:\n  - {name: a, shape: sphere:0.04, pose: [0, 0.5]}\n"
+                        "  - {name: a, shape: sphere:0.04, pose: [0, 0.6]}\n"),
+              HasSubstr("a second object is named 'a'"));
+}
+
+TEST(SceneTest, RestingObjectsStandOnTheTable) {
+  const Scene s = ReadScene(TestFile("sim_scene.yaml"));
+  EXPECT_DOUBLE_EQ(ObjectStartPose(s, ObjectIndex(s, "can")).translation().z(), 0.9 + 0.08);
+  EXPECT_DOUBLE_EQ(ObjectStartPose(s, ObjectIndex(s, "block")).translation().z(), 0.9 + 0.03);
+  // The ball touches the ring's capsules and not the table.
+  const Ring ring = RingForSphere(0.04);
+  const double z = ObjectStartPose(s, 0).translation().z() - 0.9;
+  EXPECT_GT(z, 0.02);
+  EXPECT_LT(z, 0.03);
+  const double a = ring.radius * std::cos(M_PI / ring.segments);
+  EXPECT_NEAR(std::hypot(a, z - ring.tube), 0.02 + ring.tube, 1e-12);
+  EXPECT_THROW(ObjectIndex(s, "cup"), Error);
+}
+
+TEST(SceneTest, DrawsStayWithinTheNoiseAndRepeat) {
+  const Scene s = ReadScene(TestFile("sim_scene.yaml"));
+  const Eigen::Vector3d before = s.objects[0].X_WO.translation();
+  double largest_y = 0;
+  for (std::uint64_t k = 0; k < 200; ++k) {
+    Scene drawn = s, again = s;
+    RandomEngine e1 = MakeStream(7, k, "pose"), e2 = MakeStream(7, k, "pose");
+    DrawObjectPoses(drawn, e1);
+    DrawObjectPoses(again, e2);
+    const Eigen::Vector3d d = drawn.objects[0].X_WO.translation() - before;
+    EXPECT_LE(std::abs(d.x()), 0.01);
+    EXPECT_LE(std::abs(d.y()), 0.02);
+    EXPECT_EQ(d.z(), 0);
+    EXPECT_LE(std::abs(drawn.objects[0].yaw - s.objects[0].yaw), 0.3);
+    EXPECT_EQ(drawn.objects[0].X_WO.matrix(), again.objects[0].X_WO.matrix());
+    EXPECT_EQ(drawn.objects[1].X_WO.matrix(), s.objects[1].X_WO.matrix());
+    largest_y = std::max(largest_y, std::abs(d.y()));
+  }
+  EXPECT_GT(largest_y, 0.018);
+}
+
+TEST(SceneTest, BeliefIsTruthPlusError) {
+  const Scene s = ReadScene(TestFile("sim_scene.yaml"));
+  const BelievedObject b = BelieveObject(s, 0);
+  const Pose truth = ObjectStartPose(s, 0);
+  EXPECT_TRUE((b.X_WO.translation() - truth.translation())
+                  .isApprox(Eigen::Vector3d(0.01, 0, -0.002), 1e-9));
+  EXPECT_NEAR(
+      RotationDistance(Eigen::Quaterniond(b.X_WO.linear()), Eigen::Quaterniond(truth.linear())),
+      0.1, 1e-9);
+  EXPECT_NEAR(b.shape->size.x(), 0.044, 1e-12);
+  EXPECT_NEAR(b.mass, 0.08, 1e-12);
+  EXPECT_NEAR(b.friction, 1.2, 1e-12);
+}
+
+}  // namespace
+}  // namespace springgrasp
