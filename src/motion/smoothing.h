@@ -48,9 +48,10 @@ double ChooseCutoff(double noise, double rate);
 // that of one pass, 0 < cutoff < 0.5 / dt.
 Eigen::MatrixXd FiltFilt(const Eigen::MatrixXd& x, double dt, double cutoff);
 
-// Even samples `dt` apart of a point with noise `noise` (m), smoothed with ChooseCutoff.
+// Even samples `dt` apart of a point with noise `noise` (m), smoothed with ChooseCutoff. `rate`
+// (Hz) of the measurement, if x was interpolated from it; 1 / dt if 0.
 std::vector<Eigen::Vector3d> SmoothEvenly(const std::vector<Eigen::Vector3d>& x, double dt,
-                                          double noise);
+                                          double noise, double rate = 0);
 
 // Velocities and accelerations of smooth data by local cubics over five neighbours: exact for
 // cubics, uneven samples allowed. Needs 5 samples.
