@@ -70,6 +70,8 @@ EXCLUDES = [  # pairs that overlap by construction, besides parent and child
     ("arm_r_shoulder1", "arm_r_upperarm", "published"),
     ("armar3b", "torso_pitch", "hip axis inside the column; a fixed parent is not filtered by the engine"),
     ("torso_yaw", "arm_r_shoulder2", "shoulder ball beside the box that stands for the rounded chest"),
+    ("torso_yaw", "neck_3_yaw", "neck column inside the collar, which the chest's box covers"),
+    ("neck_1_pitch", "neck_3_yaw", "neck axes meet in one point"),
     ("arm_r_underarm", "arm_r_wrist2", "wrist inside the end of the forearm capsule"),
 ]
 

