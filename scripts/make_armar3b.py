@@ -129,7 +129,7 @@ def add_defaults(root):
     arm = add(main, "default", class_="arm")
     add(arm, "joint", armature=0.05, damping=0.5)
     wrist = add(arm, "default", class_="wrist")
-    add(wrist, "joint", armature=0.005, damping=0.1)
+    add(wrist, "joint", armature=0.02, damping=0.2)
 
 
 def joint_class(body):
