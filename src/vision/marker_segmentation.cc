@@ -1,0 +1,186 @@
+#include "vision/marker_segmentation.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+namespace springgrasp {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+double PolarAngle(const Eigen::Vector2d& point, const Eigen::Vector2d& centre) {
+  return std::atan2(point.y() - centre.y(), point.x() - centre.x());
+}
+
+// Disagreement of five pairs: spread of log radius, and their distance from the known one.
+std::optional<double> HandCost(const std::array<const MarkerPair*, kNumFingers>& set,
+                               double cap_radius) {
+  double mean = 0, cost = 0;
+  for (const MarkerPair* pair : set) mean += std::log(pair->radius) / kNumFingers;
+  double spread = 0;
+  for (int i = 0; i < kNumFingers; ++i) {
+    cost += std::abs(std::log(set[i]->radius) - mean) + 0.1 * set[i]->point.residual_px;
+    if (cap_radius > 0) cost += std::abs(std::log(set[i]->radius / cap_radius));
+    for (int j = 0; j < i; ++j) {
+      if (set[i]->left == set[j]->left || set[i]->right == set[j]->right) return std::nullopt;
+      const double distance = (set[i]->point.p_WQ - set[j]->point.p_WQ).norm();
+      if (distance > 0.26 || distance < 0.008) return std::nullopt;
+      spread += distance;
+    }
+  }
+  return cost + spread;  // ten distances of decimetres: about 1, as the radii
+}
+
+}  // namespace
+
+std::vector<MarkerBlob> SegmentMarkers(const cv::Mat& likelihood, double min_area,
+                                       cv::Rect region) {
+  if (region.empty()) region = {0, 0, likelihood.cols, likelihood.rows};
+  const cv::Mat part = likelihood(region);
+  cv::Mat binary, labels, stats, centroids;
+  cv::threshold(part, binary, 127, 255, cv::THRESH_BINARY);
+  const int count = cv::connectedComponentsWithStats(binary, labels, stats, centroids, 8, CV_32S);
+  std::vector<MarkerBlob> blobs;
+  for (int i = 1; i < count; ++i) {
+    MarkerBlob blob;
+    blob.area = stats.at<int>(i, cv::CC_STAT_AREA);
+    if (blob.area < min_area) continue;
+    blob.centre = {centroids.at<double>(i, 0) + region.x, centroids.at<double>(i, 1) + region.y};
+    blob.box = {stats.at<int>(i, cv::CC_STAT_LEFT) + region.x,
+                stats.at<int>(i, cv::CC_STAT_TOP) + region.y, stats.at<int>(i, cv::CC_STAT_WIDTH),
+                stats.at<int>(i, cv::CC_STAT_HEIGHT)};
+    blobs.push_back(blob);
+  }
+  std::stable_sort(blobs.begin(), blobs.end(),
+                   [](const MarkerBlob& a, const MarkerBlob& b) { return a.area > b.area; });
+  return blobs;
+}
+
+std::vector<MarkerPair> PairMarkers(const StereoCameras& cameras,
+                                    const std::vector<MarkerBlob>& left,
+                                    const std::vector<MarkerBlob>& right, double max_epipolar_px) {
+  std::vector<MarkerPair> pairs;
+  for (int i = 0; i < static_cast<int>(left.size()); ++i) {
+    for (int j = 0; j < static_cast<int>(right.size()); ++j) {
+      const double ratio = left[i].area / right[j].area;
+      if (ratio > 2 || ratio < 0.5) continue;
+      const double off = EpipolarDistance(cameras, left[i].centre, right[j].centre);
+      if (off > max_epipolar_px) continue;
+      const auto point = Triangulate(cameras, left[i].centre, right[j].centre);
+      if (!point) continue;
+      const double depth = (cameras.left.X_WC.inverse() * point->p_WQ).z();
+      if (depth < 0.15 || depth > 3) continue;
+      const double area = 0.5 * (left[i].area + right[j].area);
+      pairs.push_back({i, j, *point, std::sqrt(area / std::numbers::pi) * depth / cameras.left.fx});
+    }
+  }
+  return pairs;
+}
+
+std::optional<PerFinger<MarkerPair>> ChooseCaps(const std::vector<MarkerPair>& pairs,
+                                                double cap_radius) {
+  // With clutter only the pairs of the likeliest size are tried: at most 4368 sets of 16.
+  std::vector<const MarkerPair*> candidates;
+  for (const MarkerPair& pair : pairs) {
+    if (pair.radius > 0.003 && pair.radius < 0.025) candidates.push_back(&pair);
+  }
+  const double expected = cap_radius > 0 ? cap_radius : 0.009;
+  std::stable_sort(candidates.begin(), candidates.end(), [&](auto* a, auto* b) {
+    return std::abs(std::log(a->radius / expected)) < std::abs(std::log(b->radius / expected));
+  });
+  if (candidates.size() > 16) candidates.resize(16);
+  const int n = static_cast<int>(candidates.size());
+  std::optional<PerFinger<MarkerPair>> best;
+  double best_cost = 1e9;
+  for (int a = 0; a < n; ++a)
+    for (int b = a + 1; b < n; ++b)
+      for (int c = b + 1; c < n; ++c)
+        for (int d = c + 1; d < n; ++d)
+          for (int e = d + 1; e < n; ++e) {
+            const auto cost = HandCost(
+                {candidates[a], candidates[b], candidates[c], candidates[d], candidates[e]},
+                cap_radius);
+            if (!cost || *cost >= best_cost) continue;
+            best_cost = *cost;
+            best = {*candidates[a], *candidates[b], *candidates[c], *candidates[d], *candidates[e]};
+          }
+  return best;
+}
+
+PerFinger<int> LabelFingers(const PerFinger<Eigen::Vector2d>& caps, const Eigen::Vector2d& palm,
+                            Handedness hand) {
+  PerFinger<int> order = {0, 1, 2, 3, 4};
+  PerFinger<double> angle;
+  for (int i = 0; i < kNumFingers; ++i) angle[i] = PolarAngle(caps[i], palm);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return angle[a] < angle[b]; });
+  // The wrist is in the widest gap.
+  int first = 0;
+  double widest = -1;
+  for (int i = 0; i < kNumFingers; ++i) {
+    const int before = order[(i + kNumFingers - 1) % kNumFingers];
+    double gap = angle[order[i]] - angle[before];
+    if (gap <= 0) gap += kTurn;
+    if (gap > widest) {
+      widest = gap;
+      first = i;
+    }
+  }
+  std::rotate(order.begin(), order.begin() + first, order.end());
+  // `order` has growing atan2(v, u): clockwise as seen, since v points down.
+  bool reverse = hand == Handedness::kRight;
+  if (hand == Handedness::kEither) {
+    reverse = (caps[order[0]] - caps[order[1]]).norm() < (caps[order[4]] - caps[order[3]]).norm();
+  }
+  if (reverse) std::reverse(order.begin(), order.end());
+  return order;
+}
+
+int FingerTurn(const PerFinger<Eigen::Vector2d>& caps, const Eigen::Vector2d& palm) {
+  double turn = 0;
+  for (int i = 1; i < kNumFingers; ++i) {
+    turn += std::remainder(PolarAngle(caps[i], palm) - PolarAngle(caps[i - 1], palm), kTurn);
+  }
+  return turn > 0 ? 1 : -1;
+}
+
+bool InFingerOrder(const PerFinger<Eigen::Vector2d>& caps, const PerFinger<bool>& seen,
+                   const Eigen::Vector2d& palm, int turn) {
+  // Neighbours must follow each other by less than half a turn, with 10 degrees of slack: two
+  // fingers one above the other are no violation.
+  constexpr double kSlack = 10 * std::numbers::pi / 180;
+  int previous = -1;
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (!seen[i]) continue;
+    if (previous >= 0) {
+      const double step =
+          turn * std::remainder(PolarAngle(caps[i], palm) - PolarAngle(caps[previous], palm), kTurn);
+      if (step < -kSlack) return false;
+    }
+    previous = i;
+  }
+  return true;
+}
+
+Eigen::Vector2d PalmFromCaps(const PerFinger<Eigen::Vector2d>& caps) {
+  // |p|^2 = 2 c.p + d, linear in c and d.
+  Eigen::Matrix<double, kNumFingers, 3> A;
+  Eigen::Matrix<double, kNumFingers, 1> b;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const auto& cap : caps) mean += cap / kNumFingers;
+  double spread = 0;
+  for (int i = 0; i < kNumFingers; ++i) {
+    const Eigen::Vector2d p = caps[i] - mean;
+    A.row(i) << 2 * p.x(), 2 * p.y(), 1;
+    b[i] = p.squaredNorm();
+    spread = std::max(spread, p.norm());
+  }
+  Eigen::Vector2d centre = A.colPivHouseholderQr().solve(b).head<2>();
+  if (!centre.allFinite()) centre.setZero();
+  if (centre.norm() > 2 * spread) centre *= 2 * spread / centre.norm();
+  return mean + centre;
+}
+
+}  // namespace springgrasp

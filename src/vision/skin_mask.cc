@@ -1,0 +1,136 @@
+#include "vision/skin_mask.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace springgrasp {
+namespace {
+
+// Cr and Cb of ITU-R BT.601, in steps of 4, as index into SkinModel::likelihood.
+int ChromaBin(int b, int g, int r) {
+  const int cr = (r * 128 - g * 107 - b * 21) / 256 + 128;
+  const int cb = (b * 128 - g * 85 - r * 43) / 256 + 128;
+  return (std::clamp(cr, 0, 255) >> 2) * SkinModel::kSide + (std::clamp(cb, 0, 255) >> 2);
+}
+
+// The wide gate of skin (after Chai and Ngan 1999, opened for red lamps), and not nearly black.
+bool MayBeSkin(int bin, int b, int g, int r) {
+  const int cr = (bin / SkinModel::kSide) * 4, cb = (bin % SkinModel::kSide) * 4;
+  return cr >= 132 && cr <= 184 && cb >= 72 && cb <= 128 && b + g + r > 75;
+}
+
+}  // namespace
+
+std::uint8_t SkinModel::Of(std::uint8_t b, std::uint8_t g, std::uint8_t r) const {
+  return b + g + r > 60 ? likelihood[ChromaBin(b, g, r)] : 0;
+}
+
+SkinModel LearnSkin(const cv::Mat& bgr, const MarkerColour& caps,
+                    const std::vector<Eigen::Vector2d>& cap_px, double cap_radius_px) {
+  constexpr int kBins = SkinModel::kSide * SkinModel::kSide;
+  std::vector<float> near(kBins, 0.0F), far(kBins, 0.0F);
+  float total_near = 1e-6F, total_far = 1e-6F;
+  for (int v = 0; v < bgr.rows; v += 2) {
+    for (int u = 0; u < bgr.cols; u += 2) {
+      double distance = 1e9;
+      for (const auto& cap : cap_px) {
+        distance = std::min(distance, std::hypot(u - cap.x(), v - cap.y()));
+      }
+      const std::uint8_t* pixel = bgr.ptr(v) + 3 * u;
+      const int bin = ChromaBin(pixel[0], pixel[1], pixel[2]);
+      if (distance > 16 * cap_radius_px) {
+        far[bin] += 1;
+        total_far += 1;
+      } else if (distance < 3 * cap_radius_px && caps.likelihood[MarkerColour::Index(pixel)] < 64 &&
+                 MayBeSkin(bin, pixel[0], pixel[1], pixel[2])) {
+        near[bin] += 1;
+        total_near += 1;
+      }
+    }
+  }
+  cv::Mat near_map(SkinModel::kSide, SkinModel::kSide, CV_32F, near.data());
+  cv::Mat far_map(SkinModel::kSide, SkinModel::kSide, CV_32F, far.data());
+  cv::GaussianBlur(near_map, near_map, {5, 5}, 1.0);
+  cv::GaussianBlur(far_map, far_map, {3, 3}, 0.6);
+  SkinModel skin;
+  for (int i = 0; i < kBins; ++i) {
+    const float p_near = near[i] / total_near, p_far = far[i] / total_far;
+    skin.likelihood[i] = static_cast<std::uint8_t>(255 * p_near / (p_near + p_far + 2e-4F));
+  }
+  return skin;
+}
+
+Eigen::Vector2d HandMask::ToMask(const Eigen::Vector2d& pixel) const {
+  return (pixel - Eigen::Vector2d(region.x, region.y)) / step;
+}
+
+Eigen::Vector2d HandMask::ToPixel(const Eigen::Vector2d& entry) const {
+  return entry * step + Eigen::Vector2d(region.x, region.y);
+}
+
+void SegmentHand(const cv::Mat& bgr, const SkinModel& skin, const MarkerColour& caps,
+                 const std::vector<Eigen::Vector2d>& cap_px, double cap_radius_px,
+                 const cv::Rect& region, int step, HandMask& hand) {
+  hand.region = region;
+  hand.step = step;
+  const int rows = (region.height + step - 1) / step, cols = (region.width + step - 1) / step;
+  hand.mask.create(rows, cols, CV_8UC1);
+  for (int i = 0; i < rows; ++i) {
+    const std::uint8_t* pixel = bgr.ptr(region.y + i * step) + 3 * region.x;
+    std::uint8_t* out = hand.mask.ptr(i);
+    for (int j = 0; j < cols; ++j, pixel += 3 * step) {
+      const bool cap = caps.likelihood[MarkerColour::Index(pixel)] > 127;
+      out[j] = cap || skin.Of(pixel[0], pixel[1], pixel[2]) > 127 ? 255 : 0;
+    }
+  }
+  const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_ELLIPSE, {3, 3});
+  cv::morphologyEx(hand.mask, hand.mask, cv::MORPH_CLOSE, kernel);
+  cv::morphologyEx(hand.mask, hand.mask, cv::MORPH_OPEN, kernel);
+  // Keep what touches a cap.
+  cv::Mat labels;
+  const int count = cv::connectedComponents(hand.mask, labels, 8, CV_32S);
+  std::vector<std::uint8_t> keep(count, 0);
+  const int reach = std::max(1, static_cast<int>(std::lround(1.5 * cap_radius_px / step)));
+  for (const auto& cap : cap_px) {
+    const Eigen::Vector2d c = hand.ToMask(cap);
+    for (int i = std::max(0, static_cast<int>(c.y()) - reach);
+         i <= std::min(rows - 1, static_cast<int>(c.y()) + reach); ++i) {
+      for (int j = std::max(0, static_cast<int>(c.x()) - reach);
+           j <= std::min(cols - 1, static_cast<int>(c.x()) + reach); ++j) {
+        keep[labels.at<int>(i, j)] = 1;
+      }
+    }
+  }
+  keep[0] = 0;
+  for (int i = 0; i < rows; ++i) {
+    std::uint8_t* out = hand.mask.ptr(i);
+    const int* label = labels.ptr<int>(i);
+    for (int j = 0; j < cols; ++j) out[j] = keep[label[j]] ? 255 : 0;
+  }
+}
+
+std::optional<Eigen::Vector2d> PalmCentre(const HandMask& hand,
+                                          const std::vector<Eigen::Vector2d>& cap_px,
+                                          double cap_radius_px, double reach_px) {
+  if (hand.mask.empty() || cap_px.empty()) return std::nullopt;
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const auto& cap : cap_px) middle += cap / static_cast<double>(cap_px.size());
+  cv::Mat distance;
+  cv::distanceTransform(hand.mask, distance, cv::DIST_L2, 3);
+  std::optional<Eigen::Vector2d> best;
+  double widest = 1.3 * cap_radius_px / hand.step;
+  for (int i = 0; i < distance.rows; ++i) {
+    const float* row = distance.ptr<float>(i);
+    for (int j = 0; j < distance.cols; ++j) {
+      if (row[j] <= widest) continue;
+      const Eigen::Vector2d pixel = hand.ToPixel({static_cast<double>(j), static_cast<double>(i)});
+      if ((pixel - middle).norm() > reach_px) continue;
+      widest = row[j];
+      best = pixel;
+    }
+  }
+  return best;
+}
+
+}  // namespace springgrasp

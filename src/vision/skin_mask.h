@@ -1,0 +1,50 @@
+// The hand's skin in a picture: learned in the first frame from what surrounds the caps, against
+// what is far from them.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "vision/marker_colour.h"
+
+namespace springgrasp {
+
+// Likelihood 0..255 of skin over Cr and Cb in steps of 4; brightness is left out.
+struct SkinModel {
+  static constexpr int kSide = 64;
+  std::array<std::uint8_t, kSide * kSide> likelihood = {};
+  std::uint8_t Of(std::uint8_t b, std::uint8_t g, std::uint8_t r) const;
+};
+
+// Skin among the pixels within three cap radii of the caps (a wide gate on Cr and Cb says which),
+// likelihood against the pixels farther than sixteen.
+SkinModel LearnSkin(const cv::Mat& bgr, const MarkerColour& caps,
+                    const std::vector<Eigen::Vector2d>& cap_px, double cap_radius_px);
+
+// A mask at reduced resolution: entry (i, j) stands for picture pixel
+// (region.x + j * step, region.y + i * step).
+struct HandMask {
+  cv::Mat mask;  // CV_8UC1, 255 skin or cap, 0 elsewhere
+  cv::Rect region;
+  int step = 2;
+  Eigen::Vector2d ToMask(const Eigen::Vector2d& pixel) const;
+  Eigen::Vector2d ToPixel(const Eigen::Vector2d& entry) const;
+};
+
+// Skin and caps within `region`, only the parts connected to a cap (gaps up to two entries
+// bridged). Reuses the memory of `hand`.
+void SegmentHand(const cv::Mat& bgr, const SkinModel& skin, const MarkerColour& caps,
+                 const std::vector<Eigen::Vector2d>& cap_px, double cap_radius_px,
+                 const cv::Rect& region, int step, HandMask& hand);
+
+// Centre of the largest disc inside the mask that is not farther from the middle of the caps than
+// `reach_px`: the palm. Nothing if no disc is wider than a finger (1.3 cap radii).
+std::optional<Eigen::Vector2d> PalmCentre(const HandMask& hand,
+                                          const std::vector<Eigen::Vector2d>& cap_px,
+                                          double cap_radius_px, double reach_px);
+
+}  // namespace springgrasp
