@@ -122,7 +122,7 @@ def add_defaults(root):
     add(sites, "site", group=4, size=0.005, rgba=(1, 0.8, 0.1, 1))
     pad = add(main, "default", class_="pad")
     add(pad, "site", group=4, size=PAD_RADIUS + 0.001, rgba=(0.1, 0.8, 0.3, 0.4))
-    for name, armature, damping, kp in (("torso", 1.0, 500, 20000), ("neck", 0.02, 10, 800), ("eyes", 0.001, 0.05, 1)):
+    for name, armature, damping, kp in (("torso", 1.0, 500, 20000), ("neck", 0.02, 20, 2500), ("eyes", 0.001, 0.05, 1)):
         group = add(main, "default", class_=name)
         add(group, "joint", armature=armature, damping=damping)
         add(group, "position", kp=kp)
