@@ -1,0 +1,142 @@
+#include "grasp/generate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "grasp/generate_fingers.h"
+#include "grasp/learn_reach.h"
+
+namespace springgrasp {
+namespace {
+
+using Eigen::Vector3d;
+
+// Midway between the thumb's contact and the mean of the others, in O.
+Vector3d MiddleOfContacts(const PerFinger<Contact>& contacts, const PerFinger<bool>& involved) {
+  Vector3d others = Vector3d::Zero();
+  int count = 0;
+  for (int i = kIndex; i < kNumFingers; ++i) {
+    if (!involved[i]) continue;
+    others += contacts[i].p_OC;
+    ++count;
+  }
+  return 0.5 * (contacts[kThumb].p_OC + others / std::max(1, count));
+}
+
+}  // namespace
+
+PerFinger<Contact> ContactsOn(const Grasp& grasp, const Shape& shape, double tip_radius) {
+  PerFinger<Contact> contacts;
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (!grasp.involved[i]) continue;
+    if (const auto hit = ContactOfRay(shape, grasp.rays[i], tip_radius)) {
+      contacts[i] = *hit;
+      continue;
+    }
+    // Eq. 6: on a sphere of the mean radius of the section orthogonal to the reach.
+    const Vector3d start = StartPose(grasp.reach).translation();
+    const Vector3d along = GoalPose(grasp.reach).translation() - start;
+    const Vector3d n = grasp.rays[i].direction.normalized();
+    contacts[i].n_O = n;
+    contacts[i].p_OC = Vector3d(0, 0, grasp.rays[i].height * shape.size.z()) +
+                       (MeanSectionRadius(shape, along) + tip_radius) * n;
+  }
+  return contacts;
+}
+
+FingertipMotion GenerateMotion(const Grasp& grasp, const GenerateOptions& options) {
+  const double T = options.duration.value_or(grasp.scales.T);
+  ThrowUnless(T > 0 && std::isfinite(T), "duration is {} s, expected a positive number", T);
+  ThrowUnless(options.dt > 0 && options.dt <= 0.1 * T,
+              "step is {} s, expected a positive number up to a tenth of the duration {} s",
+              options.dt, T);
+
+  FingertipMotion motion;
+  motion.type = grasp.type;
+  motion.involved = grasp.involved;
+  motion.shape = options.shape;
+  motion.X_WO = options.X_WO;
+  motion.X_HG = grasp.X_HG;
+  motion.hand_length = grasp.hand_length;
+  motion.T = T;
+  // Turning the reach about O's z is turning O under it; only the contacts' names in O change.
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(options.yaw, Vector3d::UnitZ()));
+  const Pose X_WO = options.X_WO * MakePose(Vector3d::Zero(), turn);
+
+  // Contacts on the new surface; G keeps its place among them.
+  const PerFinger<Contact> contacts = ContactsOn(grasp, options.shape, options.tip_radius);
+  const PerFinger<Contact> learned = ContactsOn(grasp, grasp.shape, grasp.tip_radius);
+  const Vector3d shift = MiddleOfContacts(contacts, grasp.involved) -
+                         MiddleOfContacts(learned, grasp.involved);
+  Pose X_OG_goal = grasp.X_OH * grasp.X_HG;
+  X_OG_goal.translation() += shift;
+  Pose X_OG_start = StartPose(grasp.reach);
+  X_OG_start.translation() += shift;
+  if (options.X_WG_start) X_OG_start = X_WO.inverse() * *options.X_WG_start;
+  motion.X_HO = grasp.X_HG * X_OG_goal.inverse() * MakePose(Vector3d::Zero(), turn.conjugate());
+
+  // The reach (Eq. 10-13).
+  const int count = static_cast<int>(std::floor(1.5 * T / options.dt + 1e-9)) + 1;
+  PoseDmp reach = WithEndpoints(grasp.reach, X_OG_start, X_OG_goal);
+  reach.motion.tau = T;
+  const Pose X_GH = grasp.X_HG.inverse();
+  const HandPath path = RollOutHand(reach, X_GH, T, options.dt, count);
+
+  // The fingers, their gains restored for the new movement.
+  FingerRun run;
+  run.dim = grasp.dim;
+  run.X_HP = grasp.X_HP;
+  run.involved = grasp.involved;
+  const Pose X_HO = grasp.X_HG * X_OG_goal.inverse();
+  Vector3d moved = Vector3d::Zero();
+  int involved = 0;
+  for (int i = 0; i < kNumFingers; ++i) {
+    run.p_HC[i] = grasp.offset[i];
+    run.n_H[i].setZero();
+    run.p_HF[i] = grasp.offset[i];
+    run.v_HF[i] = grasp.velocity[i] * (grasp.scales.T / T);
+    motion.p_OC[i].setZero();
+    motion.n_OC[i].setZero();
+    if (!grasp.involved[i]) continue;
+    run.p_HC[i] = X_HO * contacts[i].p_OC;
+    run.n_H[i] = X_HO.linear() * contacts[i].n_O;
+    run.p_HF[i] = run.p_HC[i] + grasp.offset[i];
+    motion.p_OC[i] = turn * contacts[i].p_OC;
+    motion.n_OC[i] = turn * contacts[i].n_O;
+    moved += run.p_HC[i];
+    ++involved;
+  }
+  if (involved > 0 && grasp.dim == 2) run.X_HP.translation() = moved / involved;
+  for (const GraspEdge& edge : grasp.edges) {
+    run.edges.emplace_back(edge.i, edge.j);
+    run.rest_lengths.push_back(edge.rest_length);
+  }
+  ReachScales scales = grasp.scales;
+  scales.T = T;
+  // A start next to the object would ask for a boundless gain.
+  const Vector3d from = (path.X_OG.front() * X_GH).translation();
+  scales.A = std::max(0.5 * grasp.scales.A, (from - (X_OG_goal * X_GH).translation()).norm());
+  run.gains = GainsFor(grasp, scales);
+  run.ambient_damping = grasp.ambient_damping;
+  run.ratio = grasp.ratio;
+  run.max_ratio = grasp.max_ratio;
+  run.T = T;
+  run.t_switch = grasp.switch_rule == "fitted" ? grasp.t_switch * T : path.t_switch;
+  motion.t_switch = run.t_switch + run.gains.delay;
+  const FingerMotion fingers = SimulateFingers(run, path.acceleration, options.dt);
+
+  for (int n = 0; n < count; ++n) {
+    const auto k = static_cast<std::size_t>(n);
+    FingertipMotionSample sample;
+    sample.t = n * options.dt;
+    sample.X_WG = X_WO * path.X_OG[k];
+    sample.X_WH = sample.X_WG * X_GH;
+    sample.f_cen = fingers.f_cen[k];
+    sample.p_HF = fingers.p_HF[k];
+    motion.samples.push_back(sample);
+  }
+  return motion;
+}
+
+}  // namespace springgrasp

@@ -1,0 +1,157 @@
+#include "grasp/generate_fingers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "grasp/spring_integrator.h"
+#include "motion/minimum_jerk.h"
+
+namespace springgrasp {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double kBlend = 0.05;  // of T; spring-model note, section 6
+
+double SmoothStep(double x) {
+  x = std::clamp(x, 0.0, 1.0);
+  return x * x * (3 - 2 * x);
+}
+
+}  // namespace
+
+MatrixXd SystemPoints(const FingerRun& run, const std::vector<int>& fingers, const Fingertips& p_H,
+                      bool direction) {
+  MatrixXd points(run.dim, static_cast<Eigen::Index>(fingers.size()));
+  const Pose X_PH = run.dim == 2 ? run.X_HP.inverse() : Pose::Identity();
+  for (std::size_t n = 0; n < fingers.size(); ++n) {
+    const Vector3d& p = p_H[fingers[n]];
+    const Vector3d q = direction ? Vector3d(X_PH.linear() * p) : Vector3d(X_PH * p);
+    points.col(static_cast<Eigen::Index>(n)) = q.head(run.dim);
+  }
+  return points;
+}
+
+SpringSystem MakeSystem(const FingerRun& run, const std::vector<int>& fingers) {
+  const int count = static_cast<int>(fingers.size());
+  SpringSystem system = MakeSpringSystem(count, run.dim, run.gains.mass);
+  const auto position = [&](int finger) {
+    const auto found = std::find(fingers.begin(), fingers.end(), finger);
+    return found == fingers.end() ? -1 : static_cast<int>(found - fingers.begin());
+  };
+  for (std::size_t e = 0; e < run.edges.size(); ++e) {
+    const int i = position(run.edges[e].first);
+    const int j = position(run.edges[e].second);
+    if (i < 0 || j < 0) continue;
+    system.springs.push_back({i, j, run.gains.k[e], run.rest_lengths[e], run.gains.d[e]});
+  }
+  system.anchors = SystemPoints(run, fingers, run.p_HC);
+  system.normals = SystemPoints(run, fingers, run.n_H, true);
+  for (Eigen::Index n = 0; n < system.normals.cols(); ++n) {
+    const double norm = system.normals.col(n).norm();
+    if (norm > 1e-6) system.normals.col(n) /= norm;  // in the plane a normal gets shorter
+  }
+  for (int n = 0; n < count; ++n) {
+    system.involved[static_cast<std::size_t>(n)] =
+        run.involved[fingers[static_cast<std::size_t>(n)]];
+  }
+  system.kc = run.gains.kc;
+  system.dc = run.gains.dc;
+  system.d0 = run.ambient_damping;
+  system.r_max = run.max_ratio;
+  system.ratio = run.ratio == "paper" ? ForceRatio::kPaper : ForceRatio::kReciprocal;
+  system.opening = OpeningDirection::kOutward;
+  return system;
+}
+
+CentralForce MakeRunForce(const FingerRun& run, const std::vector<double>& acceleration,
+                          double dt) {
+  CentralForce force;
+  // The reach's acceleration after T is the primitive settling; the holding force takes over.
+  const auto last = static_cast<Eigen::Index>(std::floor(run.T / dt + 1e-9));
+  const Eigen::Index count =
+      std::min<Eigen::Index>(last + 1, static_cast<Eigen::Index>(acceleration.size()));
+  force.t = VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1) * dt);
+  force.a = VectorXd::Map(acceleration.data(), count);
+  force.T = run.T;
+  force.t_switch = run.t_switch;
+  force.gamma = run.gains.gamma;
+  force.blend = kBlend * run.T;
+  force.delay = run.gains.delay;
+  force.beta = run.gains.closing;
+  force.hold = HoldingForce(run);
+  return force;
+}
+
+double HoldingForce(const FingerRun& run) {
+  // Largest pull of the springs between involved fingers on one of them at its contact. The other
+  // fingers are free to follow.
+  Fingertips pull;
+  pull.fill(Vector3d::Zero());
+  for (std::size_t e = 0; e < run.edges.size(); ++e) {
+    const auto [i, j] = run.edges[e];
+    if (!run.involved[i] || !run.involved[j]) continue;
+    const Vector3d d = run.p_HC[i] - run.p_HC[j];
+    const double r = std::max(d.norm(), 1e-6);
+    const Vector3d force = run.gains.k[e] * (1 - run.rest_lengths[e] / r) * d;
+    pull[i] -= force;
+    pull[j] += force;
+  }
+  double largest = 0;
+  for (const Vector3d& p : pull) largest = std::max(largest, p.norm());
+  // At 1 mm the direction of the central force has length 0.7 (soft norm of 1 mm).
+  return std::max(run.gains.holding, 1.5 * largest);
+}
+
+FingerMotion SimulateFingers(const FingerRun& run, const std::vector<double>& acceleration,
+                             double dt) {
+  const std::vector<int> fingers = {0, 1, 2, 3, 4};
+  const SpringSystem system = MakeSystem(run, fingers);
+  const CentralForce force = MakeRunForce(run, acceleration, dt);
+  const double closes = run.t_switch + run.gains.delay;
+  const double ramp = std::max(run.T - closes, kBlend * run.T);
+  ForceProfile profile;
+  profile.kinks = CentralForceKinks(force);
+  profile.f = [&force, closes, ramp](double t) {
+    const double f = EvaluateCentralForce(force, t);
+    if (t <= closes) return f;
+    return std::max(f, force.hold * SmoothStep((t - closes) / ramp));
+  };
+
+  const auto count = static_cast<Eigen::Index>(acceleration.size());
+  const VectorXd times = VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1) * dt);
+  SpringIntegration integration;
+  integration.step = std::min(dt, 0.005);
+  const auto trajectory =
+      IntegrateSprings(system, profile, SystemPoints(run, fingers, run.p_HF),
+                       SystemPoints(run, fingers, run.v_HF, true), times, integration);
+  ThrowUnless(trajectory.has_value(),
+              "the fingertip springs run away: kc {} N/m, dc {} N s/m, gamma {} kg, T {} s",
+              run.gains.kc, run.gains.dc, run.gains.gamma, run.T);
+
+  FingerMotion motion;
+  const Pose X_PH = run.X_HP.inverse();
+  for (Eigen::Index n = 0; n < count; ++n) {
+    Fingertips tips;
+    for (int i = 0; i < kNumFingers; ++i) {
+      const VectorXd p = trajectory->Point(n, i, run.dim);
+      if (run.dim == 3) {
+        tips[i] = p;
+        continue;
+      }
+      // Out of the plane: from the start to the contact by minimum jerk (system contract 5.5).
+      const double from = (X_PH * run.p_HF[i]).z();
+      const double to = run.involved[i] ? (X_PH * run.p_HC[i]).z() : from;
+      const double s = MinimumJerkPosition(std::min(1.0, times[n] / run.T));
+      tips[i] = run.X_HP * Vector3d(p[0], p[1], from + (to - from) * s);
+    }
+    motion.p_HF.push_back(tips);
+    motion.f_cen.push_back(profile.f(times[n]));
+  }
+  return motion;
+}
+
+}  // namespace springgrasp

@@ -1,0 +1,60 @@
+// One run of the fingertip springs along a reach. Learning and generating share it, so that what
+// was fitted is what is generated.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/fingers.h"
+#include "base/pose.h"
+#include "grasp/gains.h"
+#include "grasp/spring_system.h"
+#include "motion/central_force.h"
+
+namespace springgrasp {
+
+using Fingertips = PerFinger<Eigen::Vector3d>;
+
+struct FingerRun {
+  int dim = 3;                            // 2: springs in the xy-plane of P, 3
+  Pose X_HP = Pose::Identity();           // hand plane (dim 2)
+  PerFinger<bool> involved = {};
+  Fingertips p_HC, n_H;                   // contacts (tip centres) and outward normals in H
+  Fingertips p_HF, v_HF;                  // state at t = 0, m and m/s
+  std::vector<std::pair<int, int>> edges;
+  std::vector<double> rest_lengths;       // per edge, m
+  SpringGains gains;
+  double ambient_damping = 0;             // N s/m
+  std::string ratio = "reciprocal";       // paper | reciprocal
+  double max_ratio = 16;
+  double T = 1;                           // s
+  double t_switch = 0.5;                  // s
+};
+
+// The springs as a system of the listed fingers, in the plane or in space.
+SpringSystem MakeSystem(const FingerRun& run, const std::vector<int>& fingers);
+// Points or (`direction`) vectors in H as columns of that system, and a column back.
+Eigen::MatrixXd SystemPoints(const FingerRun& run, const std::vector<int>& fingers,
+                             const Fingertips& p_H, bool direction = false);
+
+// Eq. 7 with the run's gains from |a| of H's origin (m/s^2) at even steps. The sign is blended over
+// 0.05 T around the switch, since |a| is not zero there on curved reaches.
+CentralForce MakeRunForce(const FingerRun& run, const std::vector<double>& acceleration, double dt);
+
+// Holding force that keeps every involved tip within about 1 mm of its contact against the pull of
+// the virtual springs, at least gains.holding, N.
+double HoldingForce(const FingerRun& run);
+
+struct FingerMotion {
+  std::vector<Fingertips> p_HF;  // at even steps, the first is the start, m
+  std::vector<double> f_cen;     // N
+};
+
+// Fingertips in H at even steps of `dt`. After the switch the central force never falls below a
+// ramp that rises to the holding force at T. Throws Error if the springs run away.
+FingerMotion SimulateFingers(const FingerRun& run, const std::vector<double>& acceleration,
+                             double dt);
+
+}  // namespace springgrasp

@@ -1,0 +1,239 @@
+#include "grasp/learn_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "grasp/spring_estimation.h"
+#include "motion/smoothing.h"
+
+namespace springgrasp {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr int kMostRows = 120;        // measured instants used; more are thinned out
+constexpr double kStiffness = 0.03;   // k/kc where nothing was observed, and where the fit starts
+constexpr double kDamping = 0.07;     // d_e/dc at the start (spring-model note, section 5)
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// Where a fit starts: gains of movements that close early, late, and slowly.
+struct Start {
+  double omega_T, zeta, reach, delay, closing;
+};
+constexpr Start kHumanStarts[] = {{10, 1.5, 50, 0.15, 1.5}, {5, 2.0, 20, 0.2, 3}};
+constexpr Start kPaperStarts[] = {{8, 1.9, 40, 0, 1}, {5, 1.5, 20, 0, 1}};
+
+double Between(double a, double b, double fraction) { return (1 - fraction) * a + fraction * b; }
+
+// Rows of the trajectory fit: measured tips, the fingers resting while the start was completed, and
+// the contacts held from T to 1.3 T.
+SpringObservation MakeObservation(const FitProblem& problem, const std::vector<int>& fingers,
+                                  const FingerRun& run) {
+  SpringObservation out;
+  out.system = MakeSystem(run, fingers);
+  out.force = MakeRunForce(run, problem.acceleration, problem.dt);
+
+  std::vector<double> t;
+  std::vector<PerFinger<std::optional<Vector3d>>> p;
+  PerFinger<std::optional<Vector3d>> row;
+  const auto rest = [&](const Fingertips& tips, bool all) {
+    for (const int i : fingers) {
+      row[i].reset();
+      if (all || run.involved[i]) row[i] = tips[i];
+    }
+  };
+  rest(run.p_HF, true);
+  do {
+    t.push_back(0.04 * static_cast<double>(t.size()));
+    p.push_back(row);
+  } while (t.back() + 0.04 < problem.lead);
+  const std::size_t every = problem.sample_t.size() / kMostRows + 1;
+  for (std::size_t n = 0; n < problem.sample_t.size(); n += every) {
+    if (problem.sample_t[n] < t.back() + 1e-6) continue;
+    t.push_back(problem.sample_t[n]);
+    p.push_back(problem.sample_p_HF[n]);
+  }
+  const std::size_t measured = t.size();
+  rest(run.p_HC, false);
+  const double step = 0.3 * run.T / std::max(5.0, 0.25 * static_cast<double>(measured));
+  for (double held = run.T + step; held < 1.3 * run.T; held += step) {
+    t.push_back(held);
+    p.push_back(row);
+  }
+
+  const int dim = run.dim;
+  const auto rows = static_cast<Eigen::Index>(t.size());
+  const Eigen::Index columns = dim * static_cast<Eigen::Index>(fingers.size());
+  out.t = VectorXd::Map(t.data(), rows);
+  out.p = MatrixXd::Constant(rows, columns, kMissing);
+  out.p_smooth = out.v = out.a = out.p;
+  // Smoothed states of the regression.
+  const auto even = static_cast<Eigen::Index>(problem.p_HF.size());
+  MatrixXd x(even, columns);
+  for (Eigen::Index n = 0; n < even; ++n) {
+    x.row(n) = SystemPoints(run, fingers, problem.p_HF[static_cast<std::size_t>(n)]).reshaped();
+  }
+  const VectorXd even_t = VectorXd::LinSpaced(even, 0, static_cast<double>(even - 1) * problem.dt);
+  const MotionSamples smooth = DifferentiateSamples(even_t, x);
+  for (Eigen::Index n = 0; n < rows; ++n) {
+    const auto& tips = p[static_cast<std::size_t>(n)];
+    Fingertips known = run.p_HF;
+    for (const int i : fingers) {
+      if (tips[i]) known[i] = *tips[i];
+    }
+    const MatrixXd points = SystemPoints(run, fingers, known);
+    const double position = std::min(out.t[n] / problem.dt, static_cast<double>(even - 1));
+    const auto k = std::min(static_cast<Eigen::Index>(position), even - 2);
+    const double fraction = position - static_cast<double>(k);
+    const bool in_recording =
+        out.t[n] >= problem.lead && static_cast<std::size_t>(n) < measured;
+    for (std::size_t f = 0; f < fingers.size(); ++f) {
+      if (!tips[fingers[f]]) continue;
+      const auto column = static_cast<Eigen::Index>(f) * dim;
+      out.p.row(n).segment(column, dim) = points.col(static_cast<Eigen::Index>(f)).transpose();
+      if (!in_recording) continue;
+      for (Eigen::Index c = column; c < column + dim; ++c) {
+        out.p_smooth(n, c) = Between(smooth.x(k, c), smooth.x(k + 1, c), fraction);
+        out.v(n, c) = Between(smooth.v(k, c), smooth.v(k + 1, c), fraction);
+        out.a(n, c) = Between(smooth.a(k, c), smooth.a(k + 1, c), fraction);
+      }
+    }
+  }
+  return out;
+}
+
+// Edges between listed fingers, in the order in which MakeSystem keeps them.
+std::vector<std::size_t> EdgesBetween(const FingerRun& run, const std::vector<int>& fingers) {
+  std::vector<std::size_t> edges;
+  const auto listed = [&](int i) {
+    return std::find(fingers.begin(), fingers.end(), i) != fingers.end();
+  };
+  for (std::size_t e = 0; e < run.edges.size(); ++e) {
+    if (listed(run.edges[e].first) && listed(run.edges[e].second)) edges.push_back(e);
+  }
+  return edges;
+}
+
+// The fitted start, the first row of a reproduced trajectory. What leaves the plane stays.
+void SetStart(const SpringTrajectory& trajectory, const std::vector<int>& fingers, FingerRun& run) {
+  const Pose X_PH = run.X_HP.inverse();
+  for (std::size_t f = 0; f < fingers.size(); ++f) {
+    const auto column = static_cast<Eigen::Index>(f) * run.dim;
+    const VectorXd p = trajectory.p.row(0).segment(column, run.dim).transpose();
+    const VectorXd v = trajectory.v.row(0).segment(column, run.dim).transpose();
+    const int i = fingers[f];
+    if (run.dim == 3) {
+      run.p_HF[i] = p;
+      run.v_HF[i] = v;
+    } else {
+      run.p_HF[i] = run.X_HP * Vector3d(p[0], p[1], (X_PH * run.p_HF[i]).z());
+      run.v_HF[i] = run.X_HP.linear() * Vector3d(v[0], v[1], 0);
+    }
+  }
+}
+
+// Reproduction errors of a run over the measured samples; returns the RMS over everything
+// measured, the distance of the involved tips from their contacts at T included.
+double Reproduce(const FitProblem& problem, const FingerRun& run, FitResult& result) {
+  std::vector<double> acceleration = problem.acceleration;
+  const FingerMotion motion = SimulateFingers(run, acceleration, problem.dt);
+  PerFinger<double> sum = {};
+  double total = 0;
+  double count = 0;
+  const auto at = [&](double t, int i) -> Vector3d {
+    const double position = t / problem.dt;
+    const auto n = std::min(static_cast<std::size_t>(position), motion.p_HF.size() - 2);
+    const double fraction = position - static_cast<double>(n);
+    return (1 - fraction) * motion.p_HF[n][i] + fraction * motion.p_HF[n + 1][i];
+  };
+  for (std::size_t n = 0; n < problem.sample_t.size(); ++n) {
+    for (int i = 0; i < kNumFingers; ++i) {
+      if (!problem.sample_p_HF[n][i]) continue;
+      const double square = (at(problem.sample_t[n], i) - *problem.sample_p_HF[n][i]).squaredNorm();
+      sum[i] += square;
+      ++result.samples[i];
+      total += square;
+      ++count;
+    }
+  }
+  const double weight = 0.3 * count;
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (result.samples[i] > 0) result.rmse[i] = std::sqrt(sum[i] / result.samples[i]);
+    if (!run.involved[i]) continue;
+    total += weight * (at(run.T, i) - run.p_HC[i]).squaredNorm();
+    count += weight;
+  }
+  return std::sqrt(total / std::max(1.0, count));
+}
+
+}  // namespace
+
+FitResult FitSprings(const FitProblem& problem) {
+  std::vector<int> fingers;
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (problem.observed[i]) fingers.push_back(i);
+  }
+  const std::vector<std::size_t> edges = EdgesBetween(problem.run, fingers);
+  EstimationOptions options;
+  options.fit.gamma = options.fit.damping = options.fit.contact = true;
+  options.fit.beta = options.fit.delay = problem.human;
+  options.fit.t_switch = problem.fit_switch;
+  options.trim = 0.05;
+  options.gain_prior = 0.7;
+
+  FitResult best;
+  double best_error = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < 2; ++n) {
+    const Start& start = problem.human ? kHumanStarts[n] : kPaperStarts[n];
+    DimensionlessGains gains;
+    gains.omega_T = start.omega_T;
+    gains.zeta = start.zeta;
+    gains.reach = start.reach;
+    gains.delay = start.delay;
+    gains.closing = start.closing;
+    gains.stiffness.assign(problem.run.edges.size(), kStiffness);
+    gains.damping.assign(problem.run.edges.size(), kDamping);
+    FingerRun run = problem.run;
+    if (problem.fit_switch) run.t_switch = 0.45 * run.T;
+    run.gains = RestoreGains(gains, run.gains.mass, problem.scales);
+
+    const SpringEstimate estimate =
+        EstimateSprings({MakeObservation(problem, fingers, run)}, options);
+    FitResult result;
+    result.standard_errors.assign(run.edges.size(), 0.0);
+    run.gains.kc *= estimate.kc_factor;
+    run.gains.dc *= estimate.dc_factor;
+    for (double& k : run.gains.k) k *= estimate.kc_factor;
+    for (double& d : run.gains.d) d *= estimate.damping_factor;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      const auto k = static_cast<Eigen::Index>(e);
+      run.gains.k[edges[e]] = std::max(0.0, estimate.k[k]);
+      // Infinite where the data say nothing.
+      if (std::isfinite(estimate.standard_error[k])) {
+        result.standard_errors[edges[e]] = estimate.standard_error[k];
+      }
+    }
+    run.gains.gamma = estimate.gamma;
+    run.gains.closing = estimate.beta;
+    run.gains.delay = estimate.delay;
+    run.t_switch = estimate.t_switch;
+    SetStart(estimate.reproduced[0], fingers, run);
+    result.gains = MakeDimensionless(run.gains, problem.scales);
+    result.t_switch = run.t_switch;
+    result.p_HF = run.p_HF;
+    result.v_HF = run.v_HF;
+    result.condition_number = estimate.linear.condition_number;
+    const double error = Reproduce(problem, run, result);
+    if (error < best_error) {
+      best_error = error;
+      best = result;
+    }
+  }
+  return best;
+}
+
+}  // namespace springgrasp

@@ -1,0 +1,41 @@
+// Spring constants and gains of a grasp from the observed fingertips.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/fingers.h"
+#include "grasp/generate_fingers.h"
+
+namespace springgrasp {
+
+struct FitProblem {
+  FingerRun run;                     // start, contacts, edges, T, t_switch; gains are found
+  ReachScales scales;
+  std::vector<double> acceleration;  // |a| of H's origin from t = 0 on, even steps of `dt`
+  std::vector<Fingertips> p_HF;      // smoothed tips from 0 to T, even steps of `dt`
+  double dt = 0.01;                  // s
+  std::vector<double> sample_t;      // s, measured instants between 0 and T
+  std::vector<PerFinger<std::optional<Eigen::Vector3d>>> sample_p_HF;
+  double lead = 0;                   // s, completed before the recording: the fingers rest
+  PerFinger<bool> observed = {};
+  bool human = true;                 // fit delay and closing gain
+  bool fit_switch = false;
+};
+
+struct FitResult {
+  DimensionlessGains gains;
+  double t_switch = 0.5;                // s
+  Fingertips p_HF, v_HF;                // fitted start
+  std::vector<double> standard_errors;  // of k, per edge, N/m; 0 where not estimated
+  double condition_number = 0;          // of the scaled regression (Eq. 8)
+  // Of what these values generate, over the measured samples.
+  PerFinger<double> rmse = {};          // m
+  PerFinger<int> samples = {};
+};
+
+// k by Eq. 8 (SVD, NNLS), then together with the gains by Levenberg-Marquardt on the simulated
+// trajectory, from several starting gains; the values that reproduce the fingers best are kept.
+FitResult FitSprings(const FitProblem& problem);
+
+}  // namespace springgrasp
