@@ -77,6 +77,8 @@ struct CameraRenderer::Impl {
   // Fills the scene's list of geoms and points both its cameras as `view` says.
   void Update(const mjData& data, const CameraView& view) {
     MakeRenderContextCurrent();
+    mjr_setBuffer(mjFB_OFFSCREEN, &context);  // another renderer may have drawn in between
+    mjr_restoreBuffer(&context);
     mjvCamera any;
     mjv_defaultCamera(&any);
     mjv_updateScene(&model, Mutable(data), &visual, nullptr, &any, mjCAT_ALL, &scene);
@@ -101,6 +103,25 @@ struct CameraRenderer::Impl {
     scene.flags[mjRND_REFLECTION] = options.reflections;
     scene.flags[mjRND_SKYBOX] = 1;
     scene.flags[mjRND_CULL_FACE] = 1;
+    if (!options.shadows && !options.reflections) DropUnseen(X_WC, fovy);
+  }
+
+  // Leaves out geoms whose bounding sphere lies beside or behind the picture: the robot's own body
+  // behind its eyes costs more than all they see.
+  void DropUnseen(const Pose& X_WC, double fovy_deg) {
+    const Pose X_CW = X_WC.inverse();
+    const double tan_y = std::tan(fovy_deg * M_PI / 360);
+    const double tan_x = tan_y * options.width / options.height;
+    const double secant_x = std::hypot(1, tan_x), secant_y = std::hypot(1, tan_y);
+    const auto unseen = [&](const mjvGeom& g) {
+      if (g.objtype != mjOBJ_GEOM || g.modelrbound <= 0) return false;
+      const Eigen::Vector3d p_C = X_CW * Eigen::Vector3d(g.pos[0], g.pos[1], g.pos[2]);
+      const double r = 1.05 * g.modelrbound;
+      return p_C.z() < -r || std::abs(p_C.x()) - p_C.z() * tan_x > r * secant_x ||
+             std::abs(p_C.y()) - p_C.z() * tan_y > r * secant_y;
+    };
+    scene.ngeom = static_cast<int>(std::remove_if(scene.geoms, scene.geoms + scene.ngeom, unseen) -
+                                   scene.geoms);
   }
 
   mjrRect Viewport() const { return {0, 0, options.width, options.height}; }
@@ -179,16 +200,12 @@ cv::Mat CameraRenderer::Segmentation(const mjData& data, const CameraView& view)
   const mjvScene& scene = impl_->scene;
   cv::Mat ids = impl_->DrawIds();
   // From ids in the drawn list to ids in the model.
-  std::vector<int> geom_of(static_cast<std::size_t>(scene.ngeom), -1);
+  std::vector<int> geom_of(kMaxGeoms, -1);
   for (int i = 0; i < scene.ngeom; ++i) {
     const mjvGeom& g = scene.geoms[i];
-    if (g.segid >= 0 && g.segid < scene.ngeom && g.objtype == mjOBJ_GEOM) {
-      geom_of[static_cast<std::size_t>(g.segid)] = g.objid;
-    }
+    if (g.segid >= 0 && g.segid < kMaxGeoms && g.objtype == mjOBJ_GEOM) geom_of[g.segid] = g.objid;
   }
-  ids.forEach<int>([&](int& id, const int*) {
-    id = id >= 0 && id < scene.ngeom ? geom_of[static_cast<std::size_t>(id)] : -1;
-  });
+  ids.forEach<int>([&](int& id, const int*) { id = id >= 0 && id < kMaxGeoms ? geom_of[id] : -1; });
   return ids;
 }
 

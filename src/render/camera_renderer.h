@@ -20,7 +20,7 @@ struct RenderOptions {
   int shadow_size = 1024;                                              // of the shadow map
   std::vector<bool> groups = {true, true, true, false, false, false};  // geom groups drawn
   // Pretty: shadows on. Build the model with offscreen_samples = 4 for smooth edges.
-  static RenderOptions Pretty(int width = 960, int height = 720);
+  static RenderOptions Pretty(int width = 800, int height = 600);
 };
 
 // A named camera of the model, or a free one (name empty).

@@ -127,9 +127,12 @@ void AddSettings(const Scene& scene, int offscreen_samples, XmlElement* root) {
   XmlElement* quality = ChildOf(visual, "quality");
   quality->SetAttribute("offsamples", offscreen_samples);
   quality->SetAttribute("shadowsize", 1024);
+  quality->SetAttribute("numslices", 20);
+  quality->SetAttribute("numstacks", 12);
   XmlElement* map = ChildOf(visual, "map");
   Set(map, "znear", "0.01");
   Set(map, "zfar", "10");
+  Set(map, "shadowclip", "0.6");
   XmlElement* headlight = ChildOf(visual, "headlight");
   Set(headlight, "ambient", "0.35 0.35 0.35");
   Set(headlight, "diffuse", "0.2 0.2 0.2");
