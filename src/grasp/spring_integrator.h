@@ -71,11 +71,15 @@ class SpringStepper {
   SpringTerms terms_;
   Stages stages_;
   Eigen::MatrixXd Jp_, Jv_, newton_;
-  Eigen::VectorXd residual_;
+  Eigen::VectorXd residual_, change_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
 };
 
-// Gauss-Legendre nodes and weights, two stages.
+// Advances from t0 to t1 in equal steps of at most `step`, restarted at the kinks of the force.
+bool AdvanceSprings(SpringStepper& stepper, const ForceProfile& force, double t0, double t1,
+                    double step, Eigen::MatrixXd& p, Eigen::MatrixXd& v);
+
+// Gauss-Legendre nodes and coefficients, two stages.
 inline constexpr double kGaussC[2] = {0.21132486540518711775, 0.78867513459481288225};
 inline constexpr double kGaussA[2][2] = {{0.25, -0.03867513459481288225},
                                          {0.53867513459481288225, 0.25}};
