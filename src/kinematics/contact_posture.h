@@ -19,7 +19,8 @@ struct ContactRequest {
   Shape shape;
   PerFinger<Eigen::Vector3d> p_OC;     // tip centres when touching (robot's tip radius), m
   PerFinger<Eigen::Vector3d> n_OC;     // outward normals
-  Pose X_OH_human = Pose::Identity();  // demonstrated hand in O: wrist direction, palm direction
+  Pose X_OG = Pose::Identity();        // demonstrated grasp frame in O at contact
+  Pose X_OH_human = Pose::Identity();  // demonstrated hand in O at contact: where the palm looks
   MappingTarget human;                 // demonstrated posture at contact (TargetFromHuman)
 };
 
@@ -52,5 +53,9 @@ struct ContactPosture {
 // Throws Error for an unknown type or without thumb.
 ContactPosture SolveContactPosture(const RobotHand& hand, const ContactRequest& request,
                                    const ContactPostureOptions& options = {});
+
+// Fills what can be measured of a posture (X_HG, p_OC, gap, slide, penetration, ...) from its X_HO
+// and q.
+void JudgePosture(const RobotHand& hand, const ContactRequest& request, ContactPosture& posture);
 
 }  // namespace springgrasp

@@ -9,7 +9,9 @@
 namespace springgrasp {
 namespace {
 
-constexpr double kRetryError = 0.003;  // m, tip error that is worth a second start
+// A warm start that ends farther than this from the tip may try again from rest, and jumps there
+// if that is much nearer.
+constexpr double kRetryError = 0.010, kRetryGood = 0.002;  // m
 
 LevenbergMarquardtOptions SolverOptions(const HandIkOptions& options) {
   LevenbergMarquardtOptions solver;
@@ -67,10 +69,10 @@ class PostureRows {
   const HandIkOptions& options_;
 };
 
-// One finger: its joints from the tip in H. Writes into q, returns the cost.
-double SolveFinger(const HumanHand& hand, int finger, const Eigen::Vector3d& p_HF,
-                   const Eigen::VectorXd& previous, const HandIkOptions& options,
-                   const Eigen::VectorXd& start, Eigen::VectorXd& q) {
+// One finger: its joints from the tip in H, written into q.
+void SolveFinger(const HumanHand& hand, int finger, const Eigen::Vector3d& p_HF,
+                 const Eigen::VectorXd& previous, const HandIkOptions& options,
+                 const Eigen::VectorXd& start, Eigen::VectorXd& q) {
   const std::vector<int>& joints = hand.joints[finger];
   const int n = static_cast<int>(joints.size());
   const PostureRows posture(hand, finger, previous, options);
@@ -102,7 +104,6 @@ double SolveFinger(const HumanHand& hand, int finger, const Eigen::Vector3d& p_H
   };
   const LevenbergMarquardtResult result = MinimizeLeastSquares(problem, x, SolverOptions(options));
   for (int i = 0; i < n; ++i) q[joints[i]] = result.x[i];
-  return result.cost;
 }
 
 PerFinger<double> TipErrors(const HumanHand& hand, const Eigen::VectorXd& q, const Pose& X_WH,
@@ -151,12 +152,11 @@ HandIkResult SolveHandIk(const HumanHand& hand, const KnownTips& p_HF,
       }
       continue;
     }
-    const double cost = SolveFinger(hand, f, *p_HF[f], held, options, start, result.q);
-    const double error = TipErrors(hand, result.q, Pose::Identity(), p_HF)[f];
-    if (warm && error > kRetryError) {
+    SolveFinger(hand, f, *p_HF[f], held, options, start, result.q);
+    if (warm && TipErrors(hand, result.q, Pose::Identity(), p_HF)[f] > kRetryError) {
       Eigen::VectorXd q = result.q;
-      const double retry = SolveFinger(hand, f, *p_HF[f], held, options, hand.rest, q);
-      if (retry < 0.5 * cost) result.q = q;
+      SolveFinger(hand, f, *p_HF[f], {}, options, hand.rest, q);
+      if (TipErrors(hand, q, Pose::Identity(), p_HF)[f] < kRetryGood) result.q = q;
     }
   }
   result.error = TipErrors(hand, result.q, Pose::Identity(), p_HF);
