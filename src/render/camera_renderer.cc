@@ -69,6 +69,7 @@ struct CameraRenderer::Impl {
   }
 
   ~Impl() {
+    const std::lock_guard lock(RenderMutex());
     MakeRenderContextCurrent();
     mjr_freeContext(&context);
     mjv_freeScene(&scene);
@@ -149,11 +150,15 @@ struct CameraRenderer::Impl {
 };
 
 CameraRenderer::CameraRenderer(const mjModel& model, RenderOptions options)
-    : options_(std::move(options)), impl_(std::make_unique<Impl>(model, options_)) {}
+    : options_(std::move(options)) {
+  const std::lock_guard lock(RenderMutex());
+  impl_ = std::make_unique<Impl>(model, options_);
+}
 CameraRenderer::~CameraRenderer() = default;
 
 cv::Mat CameraRenderer::Bgr(const mjData& data, const CameraView& view,
                             const std::vector<Mark>& marks) {
+  const std::lock_guard lock(RenderMutex());
   impl_->Update(data, view);
   mjvScene& scene = impl_->scene;
   for (const Mark& mark : marks) {
@@ -178,6 +183,7 @@ cv::Mat CameraRenderer::Bgr(const mjData& data, const CameraView& view,
 }
 
 cv::Mat CameraRenderer::Depth(const mjData& data, const CameraView& view) {
+  const std::lock_guard lock(RenderMutex());
   impl_->Update(data, view);
   impl_->Draw();
   mjr_readPixels(nullptr, impl_->depth.data(), impl_->Viewport(), &impl_->context);
@@ -196,6 +202,7 @@ cv::Mat CameraRenderer::Depth(const mjData& data, const CameraView& view) {
 }
 
 cv::Mat CameraRenderer::Segmentation(const mjData& data, const CameraView& view) {
+  const std::lock_guard lock(RenderMutex());
   impl_->Update(data, view);
   const mjvScene& scene = impl_->scene;
   cv::Mat ids = impl_->DrawIds();
@@ -211,6 +218,7 @@ cv::Mat CameraRenderer::Segmentation(const mjData& data, const CameraView& view)
 
 std::vector<CameraRenderer::Visibility> CameraRenderer::CountVisible(
     const mjData& data, const CameraView& view, const std::vector<int>& geoms) {
+  const std::lock_guard lock(RenderMutex());
   std::vector<Visibility> counts(geoms.size());
   const cv::Mat seen = Segmentation(data, view);
   for (std::size_t i = 0; i < geoms.size(); ++i) {

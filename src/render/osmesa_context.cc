@@ -41,7 +41,13 @@ void MakeRenderContextCurrent() {
               "OSMesa: the off-screen context cannot be made current");
 }
 
+std::recursive_mutex& RenderMutex() {
+  static auto* mutex = new std::recursive_mutex();
+  return *mutex;
+}
+
 std::string RendererDescription() {
+  const std::lock_guard lock(RenderMutex());
   MakeRenderContextCurrent();
   using GetString = const unsigned char* (*)(unsigned);
   const auto get = reinterpret_cast<GetString>(OSMesaGetProcAddress("glGetString"));

@@ -35,11 +35,8 @@ void CheckStartNames(const Scene& scene, const mjModel& robot) {
 
 bool IsActive(const Scene& scene, const std::string& joint) {
   const std::string subsystem = SubsystemOfJoint(joint);
-  if (subsystem == "torso" && scene.torso == "free") return true;
-  if (subsystem == "torso" || subsystem == "platform") {
-    return scene.torso == "free" &&
-           std::count(scene.active.begin(), scene.active.end(), subsystem) > 0;
-  }
+  if (subsystem == "torso") return scene.torso == "free";
+  if (subsystem == "platform") return false;
   return subsystem.empty() || std::count(scene.active.begin(), scene.active.end(), subsystem) > 0;
 }
 

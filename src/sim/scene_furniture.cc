@@ -134,8 +134,8 @@ void AddSettings(const Scene& scene, int offscreen_samples, XmlElement* root) {
   Set(map, "zfar", "10");
   Set(map, "shadowclip", "0.6");
   XmlElement* headlight = ChildOf(visual, "headlight");
-  Set(headlight, "ambient", "0.35 0.35 0.35");
-  Set(headlight, "diffuse", "0.2 0.2 0.2");
+  Set(headlight, "ambient", "0.32 0.32 0.32");
+  Set(headlight, "diffuse", "0.3 0.3 0.3");
   Set(headlight, "specular", "0 0 0");
 }
 

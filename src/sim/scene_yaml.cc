@@ -198,8 +198,9 @@ void ReadPhysics(YamlReader yaml, ScenePhysics& p) {
 void FillDefaultView(Scene& scene) {
   const Eigen::Vector3d top(scene.table.position.x(), scene.table.position.y(), scene.table.height);
   if (scene.lights.empty()) {
-    scene.lights = {{top + Eigen::Vector3d(0.6, 1.2, 2.0), top, 0.55, true},
-                    {top + Eigen::Vector3d(-1.2, 0.6, 2.0), top, 0.35, false}};
+    // One from the front, one past the robot's shoulder onto what its eyes see.
+    scene.lights = {{top + Eigen::Vector3d(0.6, 1.2, 2.0), top, 0.5, true},
+                    {top + Eigen::Vector3d(-1.2, -2.2, 1.2), top, 0.35, false}};
   }
   if (!scene.cameras.empty()) return;
   Eigen::Vector3d target = top;
@@ -220,8 +221,8 @@ Scene ReadSceneFrom(YamlReader yaml, const std::string& name) {
               "part of the robot model)",
               yaml.Where("hand"), scene.hand);
   yaml.Read("active", scene.active);
-  const std::set<std::string> subsystems = {"platform",   "torso",    "head",     "right_arm",
-                                            "right_hand", "left_arm", "left_hand"};
+  const std::set<std::string> subsystems = {"head", "right_arm", "right_hand", "left_arm",
+                                            "left_hand"};
   for (const std::string& s : scene.active) {
     ThrowUnless(subsystems.count(s) > 0, "{}: active holds '{}', expected some of {}",
                 yaml.Where("active"), s, fmt::join(subsystems, ", "));

@@ -2,9 +2,9 @@
 
 #include <gmock/gmock.h>
 
-#include <chrono>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <thread>
 
 #include "base/error.h"
 #include "base/random.h"
@@ -122,6 +122,24 @@ TEST(CameraRendererTest, SeveralModelsShareTheContextAndGiveTheSamePixelsAgain) 
   const cv::Mat after = first.Bgr(ball.data(), CameraView::Named("eye"));
   EXPECT_EQ(cv::norm(before, after, cv::NORM_INF), 0);
   EXPECT_GT(cv::norm(before, other, cv::NORM_INF), 0);
+}
+
+TEST(CameraRendererTest, ThreadsTakeTurns) {
+  std::vector<cv::Mat> first(2), second(2);
+  const auto draw = [](cv::Mat& a, cv::Mat& b) {
+    Simulation sim(BuildModel(TestScene()));
+    CameraRenderer renderer(sim.model());
+    a = renderer.Bgr(sim.data(), CameraView::Named("front"));
+    for (int i = 0; i < 5; ++i) renderer.Bgr(sim.data(), CameraView::Named("eye_l_wide"));
+    b = renderer.Bgr(sim.data(), CameraView::Named("front"));
+  };
+  std::thread other([&] { draw(first[1], second[1]); });
+  draw(first[0], second[0]);
+  other.join();
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(cv::norm(first[0], first[i], cv::NORM_INF), 0);
+    EXPECT_EQ(cv::norm(first[0], second[i], cv::NORM_INF), 0);
+  }
 }
 
 TEST(CameraRendererTest, LeavingOutTheUnseenChangesNoPixel) {

@@ -107,6 +107,32 @@ TEST(SceneBuilderTest, DemonstratorIsPlacedAndTouchesNothing) {
   }
 }
 
+TEST(SceneBuilderTest, FilesBecomeObjectsWithTheMassOfTheScene) {
+  Scene scene = ParseScene(R"(
+table: {height: 0.9}
+objects:
+  - {name: cup, model: sim_cup.xml, mass: 0.25, friction: 0.6, pose: [0.3, 0.6, 0.9]}
+  - {name: wedge, model: sim_wedge.obj, mass: 0.15, friction: 0.7, pose: [0.45, 0.6, 0.92]}
+)",
+                           TestFile("files.yaml"));
+  BuildOptions options;
+  options.with_robot = false;
+  Simulation sim(BuildModel(scene, options));
+  const mjModel& m = sim.model();
+  for (const SceneObject& object : scene.objects) {
+    const int body = IdOf(m, mjOBJ_BODY, object.name);
+    EXPECT_NEAR(m.body_subtreemass[body], object.mass, 1e-9) << object.name;
+    EXPECT_EQ(m.geom_friction[3 * m.body_geomadr[body]], object.friction) << object.name;
+    EXPECT_GE(FindId(m, mjOBJ_JOINT, object.name + "_free"), 0);
+  }
+  sim.Step(500);
+  ASSERT_FALSE(sim.diverged());
+  for (int i = 0; i < 2; ++i) {
+    const Pose X = BodyPose(m, sim.data(), scene.objects[i].name);
+    EXPECT_LT((X.translation() - ObjectStartPose(scene, i).translation()).norm(), 2e-3) << i;
+  }
+}
+
 TEST(SceneBuilderTest, WrongStartPosturesAreErrors) {
   Scene scene = TestScene();
   scene.start = {{"arm_r_knee", 0.1}};

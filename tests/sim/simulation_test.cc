@@ -126,6 +126,14 @@ TEST(SimulationTest, DivergenceIsAStateNotACrash) {
   EXPECT_TRUE(sim.diverged());
 }
 
+TEST(SimulationTest, EngineErrorsAreCaughtInAStep) {
+  Simulation sim(BuildModel(TestScene()));
+  sim.mutable_data().nstack = 8;  // far too small: the engine calls mju_error, which must not exit
+  sim.Step();
+  ASSERT_TRUE(sim.diverged());
+  EXPECT_THAT(sim.diverged()->warning, ::testing::HasSubstr("MuJoCo"));
+}
+
 TEST(SimulationTest, PlacingWorksOnFreeBodiesOnly) {
   Simulation sim(BuildModel(TestScene()));
   const Pose X = MakePose({0.1, 0.5, 1.3}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5));
