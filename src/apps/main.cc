@@ -1,1 +1,59 @@
-int main() { return 0; }
+// springgrasp: from a human grasp, seen by a robot, to the robot's own.
+#include <fmt/format.h>
+#include <mujoco/mujoco.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "apps/command.h"
+#include "experiment/store.h"
+#include "render/osmesa_context.h"
+
+namespace springgrasp {
+namespace {
+
+std::string VersionText() {
+  return fmt::format("springgrasp {}\nMuJoCo {}\nrenderer {}", SPRINGGRASP_VERSION,
+                     mj_versionString(), RendererDescription());
+}
+
+int Report(const char* message, int code) {
+  fmt::print(stderr, "springgrasp: {}\n", message);
+  return code;
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app(
+      "Learns grasps from human demonstrations as systems of virtual springs, and "
+      "performs them with a humanoid robot in physics simulation.");
+  app.name("springgrasp");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", VersionText);
+  int exit_code = kDone;
+  AddRunCommand(app, exit_code);
+  AddStatusCommand(app, exit_code);
+  AddExportCommand(app, exit_code);
+  AddCheckCommand(app, exit_code);
+  AddObserveCommand(app, exit_code);
+  AddLearnCommand(app, exit_code);
+  AddGenerateCommand(app, exit_code);
+  AddInspectCommand(app, exit_code);
+  AddModelCommand(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app.exit(e);  // --help, --version
+  } catch (const CLI::ParseError& e) {
+    return Report(e.what(), kBadInput);
+  } catch (const ForeignDirectory& e) {
+    return Report(e.what(), kForeignDirectory);
+  } catch (const std::exception& e) {
+    return Report(e.what(), kBadInput);
+  }
+  return exit_code;
+}
+
+}  // namespace
+}  // namespace springgrasp
+
+int main(int argc, char** argv) { return springgrasp::Main(argc, argv); }

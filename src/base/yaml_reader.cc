@@ -58,6 +58,12 @@ std::string Shown(const YAML::Node& node) {
   return text.size() > 60 ? text.substr(0, 57) + "..." : text;
 }
 
+std::string Emitted(const YAML::Node& node) {
+  YAML::Emitter out;
+  out << node;
+  return std::string(out.c_str()) + "\n";
+}
+
 void CheckNumber(double value, Bounds bounds, const std::string& where, const std::string& name) {
   ThrowUnless(std::isfinite(value), "{}: {} is {}, expected a finite number", where, name, value);
   ThrowUnless(value >= bounds.lower && value <= bounds.upper,
@@ -301,9 +307,11 @@ std::string ApplyOverride(const std::string& yaml_text, const std::string& key_e
     node.reset(next);
     rest = rest.substr(dot + 1);
   }
-  YAML::Emitter out;
-  out << root;
-  return std::string(out.c_str()) + "\n";
+  return Emitted(root);
+}
+
+std::string NormaliseYaml(const std::string& yaml_text) {
+  return Emitted(Load(yaml_text, "(configuration)"));
 }
 
 }  // namespace springgrasp

@@ -1,0 +1,57 @@
+// springgrasp generate: a learned grasp for a new object, without physics.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/command.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "grasp/generate.h"
+
+namespace springgrasp {
+namespace {
+
+struct Options {
+  std::string grasp, object, shape, output;
+  double duration = 0;
+  double yaw = 0;
+};
+
+int Generate(const Options& options) {
+  CheckOutputPath(options.output);
+  const Grasp grasp = ReadGrasp(options.grasp);
+  GenerateOptions generate;
+  generate.shape = ParseShape(options.shape);
+  generate.X_WO = ParsePose(options.object, "--object");
+  generate.yaw = options.yaw;
+  if (options.duration > 0) generate.duration = options.duration;
+  const FingertipMotion motion = GenerateMotion(grasp, generate);
+  MakeFolderOf(options.output);
+  WriteFileAtomically(options.output, FormatFingertipMotion(motion));
+  fmt::print("{}: {} samples, reach of {:.2f} s, closing from {:.2f} s\n", options.output,
+             motion.samples.size(), motion.T, motion.t_switch);
+  return kDone;
+}
+
+}  // namespace
+
+void AddGenerateCommand(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = AddCommand(
+      app, "generate", "Generates reach, central force and fingertips of a grasp for an object.",
+      "experiments/first_grasps/pinch.yaml --object \"0.35 0.5 0.9 1 0 0 0\" --shape sphere:0.04 "
+      "-o out/motion.csv");
+  command->add_option("grasp", options->grasp, "grasp YAML of `learn`")->required();
+  command->add_option("--object", options->object, "pose of the object \"x y z qw qx qy qz\", m")
+      ->required();
+  command->add_option("--shape", options->shape, "sphere:D, cylinder:DxH or box:XxYxZ, metres")
+      ->required();
+  command->add_option("-o,--output", options->output, "motion CSV")->required();
+  command->add_option("--duration", options->duration, "of the reach, s (default: as demonstrated)")
+      ->check(CLI::Range(0.1, 20.0));
+  command->add_option("--yaw", options->yaw, "turns the reach about the object's z, rad")
+      ->check(CLI::Range(-6.2832, 6.2832));
+  command->callback([options, &exit_code] { exit_code = Generate(*options); });
+}
+
+}  // namespace springgrasp

@@ -1,0 +1,65 @@
+// springgrasp learn: DMP and virtual springs from a demonstration.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/command.h"
+#include "demonstration/demonstration.h"
+#include "grasp/learn.h"
+
+namespace springgrasp {
+namespace {
+
+struct Options {
+  std::string demonstration, output, object, pose;
+  LearnOptions learn;
+};
+
+int Learn(Options options) {
+  CheckOutputPath(options.output);
+  const Demonstration demonstration = ReadDemonstration(options.demonstration);
+  if (!options.object.empty()) {
+    DemonstratedObject object;
+    object.shape = ParseShape(options.object);
+    object.X_WO = ParsePose(options.pose, "--pose");
+    options.learn.object = object;
+  }
+  const Grasp grasp = LearnGrasp(demonstration, options.learn);
+  MakeFolderOf(options.output);
+  WriteGrasp(grasp, options.output);
+  fmt::print("{}", ReportGrasp(grasp));
+  return kDone;
+}
+
+}  // namespace
+
+void AddLearnCommand(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  LearnOptions& learn = options->learn;
+  CLI::App* command = AddCommand(
+      app, "learn", "Learns a grasp from a demonstration: reach, contacts, spring constants.",
+      "experiments/first_grasps/pinch.csv --type pinch -o out/pinch.yaml");
+  command->add_option("demonstration", options->demonstration, "demonstration CSV")->required();
+  command->add_option("--type", learn.type, "grasp type")
+      ->required()
+      ->check(CLI::IsMember({"pinch", "tripod", "power", "lateral"}));
+  command->add_option("-o,--output", options->output, "grasp YAML")->required();
+  command
+      ->add_option("--dim", learn.dim, "springs in the hand plane (2, the paper) or in space (3)")
+      ->check(CLI::IsMember({2, 3}))
+      ->capture_default_str();
+  command->add_option("--profile", learn.profile, "human, or paper: without our extensions")
+      ->check(CLI::IsMember({"human", "paper"}))
+      ->capture_default_str();
+  command->add_option("--name", learn.name, "of the library entry (default: the type)");
+  CLI::Option* object = command->add_option(
+      "--object", options->object,
+      "the object that was grasped: sphere:D, cylinder:DxH or box:XxYxZ, metres");
+  CLI::Option* pose = command->add_option("--pose", options->pose,
+                                          "its pose \"x y z qw qx qy qz\" in the frame of the CSV");
+  object->needs(pose);
+  pose->needs(object);
+  command->callback([options, &exit_code] { exit_code = Learn(*options); });
+}
+
+}  // namespace springgrasp

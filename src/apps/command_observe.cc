@@ -1,0 +1,82 @@
+// springgrasp observe: the simulated demonstrator before the robot's eyes, tracked.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "apps/command.h"
+#include "base/error.h"
+#include "experiment/observe.h"
+#include "experiment/table.h"
+
+namespace springgrasp {
+namespace {
+
+struct Options {
+  std::string scene, output, overlay, truth, frames;
+  std::uint64_t seed = 1;
+  double fps = 0;
+  double noise = 0;
+};
+
+void Print(const ObservationErrors& errors) {
+  std::vector<std::vector<std::string>> rows = {
+      {"finger", "median mm", "95 % mm", "tracked while visible %"}};
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (errors.counted[f] == 0) continue;
+    rows.push_back({std::string(kFingerNames[f]), fmt::format("{:.2f}", 1e3 * errors.median[f]),
+                    fmt::format("{:.2f}", 1e3 * errors.p95[f]),
+                    fmt::format("{:.0f}", 100 * errors.coverage[f])});
+  }
+  fmt::print("{}", AlignColumns(rows));
+  fmt::print("hand: median {:.1f} mm, {:.1f} deg, seen in {:.0f} % of frames\n",
+             1e3 * errors.wrist_median, errors.wrist_rotation_median_deg,
+             100 * errors.wrist_coverage);
+}
+
+int RunObserve(const Options& options) {
+  for (const std::string& path : {options.output, options.overlay, options.truth}) {
+    CheckOutputPath(path);
+  }
+  const Scene scene = ReadScene(options.scene);
+  ObserveOptions observe;
+  observe.fps = options.fps > 0 ? options.fps : scene.demonstrator.fps;
+  observe.noise = options.noise;
+  observe.overlay = options.overlay;
+  observe.frames_folder = options.frames;
+  RandomEngine engine = MakeStream(options.seed, 0, "observation");
+  MakeFolderOf(options.overlay);
+  if (!options.frames.empty()) std::filesystem::create_directories(options.frames);
+  const Observation observation = Observe(scene, engine, observe);
+  MakeFolderOf(options.output);
+  MakeFolderOf(options.truth);
+  if (!options.truth.empty()) WriteDemonstration(observation.truth, options.truth);
+  WriteDemonstration(observation.tracked, options.output);
+  fmt::print("{}: {} samples\n", options.output, observation.tracked.samples.size());
+  Print(observation.errors);
+  return kDone;
+}
+
+}  // namespace
+
+void AddObserveCommand(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      AddCommand(app, "observe",
+                 "Shows a demonstration to the robot's wide-angle stereo cameras and tracks it.",
+                 "scenes/pinch_ball.yaml -o out/pinch.csv --overlay out/pinch.mp4");
+  command->add_option("scene", options->scene, "scene YAML with a demonstrator")->required();
+  command->add_option("-o,--output", options->output, "demonstration CSV: what was tracked")
+      ->required();
+  command->add_option("--truth", options->truth, "demonstration CSV: what was shown");
+  command->add_option("--overlay", options->overlay, "video of the tracking (.mp4)");
+  command->add_option("--save-frames", options->frames, "folder for the pictures of both eyes");
+  command->add_option("--fps", options->fps, "frames per second (default: the scene's)")
+      ->check(CLI::Range(5.0, 1000.0));
+  command->add_option("--noise", options->noise, "deviation of the grey values, 0 to 255")
+      ->check(CLI::Range(0.0, 255.0));
+  command->add_option("--seed", options->seed, "of the random streams")->capture_default_str();
+  command->callback([options, &exit_code] { exit_code = RunObserve(*options); });
+}
+
+}  // namespace springgrasp

@@ -1,0 +1,117 @@
+// springgrasp run: every trial of an experiment, from demonstration to outcome.
+#include <signal.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "apps/command.h"
+#include "apps/progress.h"
+#include "base/error.h"
+#include "experiment/runner.h"
+#include "experiment/table.h"
+#if __has_include("experiment/trial.h")
+#include "experiment/trial.h"
+#else
+namespace springgrasp {
+inline TrialResult RunTrial(const TrialSpec&, const TrialOutput&) { Fail("not yet"); }
+}  // namespace springgrasp
+#endif
+
+namespace springgrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string experiment;
+  std::string directory;
+  int jobs = 1;
+  int limit = -1;
+  std::vector<std::string> overrides;
+  bool quiet = false;
+};
+
+volatile sig_atomic_t stop_requested = 0;
+
+// The first signal asks for a clean end, a second one ends at once.
+void OnSignal(int number) {
+  stop_requested = 1;
+  signal(number, SIG_DFL);
+}
+
+// A folder given on the command line is meant from where the user stands, not from the file.
+std::string MakeFolderAbsolute(const std::string& override_text) {
+  const std::string key = "demonstrations=";
+  if (override_text.rfind(key, 0) != 0) return override_text;
+  const std::string folder = override_text.substr(key.size());
+  std::error_code ignored;
+  ThrowUnless(fs::is_directory(folder, ignored), "--set {}: no such folder", override_text);
+  return key + "'" + fs::canonical(folder).string() + "'";
+}
+
+void PrintResults(ResultStore& store) {
+  const std::vector<StoredTrial> trials = store.Trials();
+  fmt::print("{}", OutcomeTable(trials));
+  const std::string recordings = RecordingTable(trials);
+  if (!recordings.empty()) fmt::print("\n{}", recordings);
+  std::vector<std::string> videos;
+  std::error_code ignored;
+  for (const auto& entry :
+       fs::recursive_directory_iterator(fs::path(store.directory()) / "trials", ignored)) {
+    const auto extension = entry.path().extension();
+    if (extension == ".mp4" || extension == ".png") videos.push_back(entry.path());
+  }
+  std::sort(videos.begin(), videos.end());
+  fmt::print("\nresults: {}\n", (fs::path(store.directory()) / "results.sqlite").string());
+  for (const std::string& video : videos) fmt::print("video:   {}\n", video);
+}
+
+int Run(Options options) {
+  for (std::string& text : options.overrides) text = MakeFolderAbsolute(text);
+  const Experiment experiment = ReadExperiment(options.experiment, options.overrides);
+  const std::vector<PlannedTrial> trials = ExpandExperiment(experiment);
+  ResultStore store = ResultStore::OpenForRun(options.directory, DescribeRun(experiment, trials));
+  RunOptions run;
+  run.jobs = options.jobs;
+  run.limit = options.limit;
+  run.stop_requested = [] { return stop_requested != 0; };
+  signal(SIGINT, OnSignal);
+  signal(SIGTERM, OnSignal);
+  RunEnd end;
+  {
+    ProgressPrinter printer(options.quiet);
+    run.on_progress = [&printer](const RunProgress& progress) { printer(progress); };
+    end = RunTrials(trials, store, RunTrial, run);
+  }
+  if (!options.quiet) PrintResults(store);
+  return end == RunEnd::kComplete ? kDone : kStoppedEarly;
+}
+
+}  // namespace
+
+void AddRunCommand(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      AddCommand(app, "run", "Runs every trial of an experiment; resumes a stopped directory.",
+                 "experiments/first_grasps -o out/first_grasps --jobs 2");
+  command
+      ->add_option("experiment", options->experiment,
+                   "YAML file, or a folder that holds experiment.yaml")
+      ->required();
+  command->add_option("-o,--output", options->directory, "directory for the results")->required();
+  command->add_option("--jobs", options->jobs, "worker processes")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command
+      ->add_option("--set", options->overrides,
+                   "overrides one value of the experiment, key=value with a dotted path; may be "
+                   "given several times")
+      ->allow_extra_args(false);
+  command->add_option("--limit", options->limit, "runs at most so many trials now")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--quiet", options->quiet, "no progress, no table");
+  command->callback([options, &exit_code] { exit_code = Run(*options); });
+}
+
+}  // namespace springgrasp

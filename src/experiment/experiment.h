@@ -1,0 +1,77 @@
+// EXPERIMENT: scenes x demonstrations x grasps x variations x repetitions, and what to record.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiment/phases.h"
+#include "experiment/trial_spec.h"
+
+namespace springgrasp {
+
+// Which trials of a case leave a file: none, repetition 0 of each case, or all.
+enum class RecordWhich { kNone, kOne, kAll };
+
+struct RecordOptions {
+  RecordWhich videos = RecordWhich::kNone;
+  RecordWhich overlays = RecordWhich::kNone;
+  RecordWhich trajectories = RecordWhich::kOne;
+};
+
+// Where the demonstrations of a case come from.
+struct CaseDemonstration {
+  bool recorded = false;  // else synthesised
+  std::string file;       // recorded: one CSV ...
+  std::string match;      // ... or all of the experiment's folder that match this glob pattern
+};
+
+// `key=value` with a dotted path into the scene's YAML. `{depth}` in a value stands for the
+// number before `mm` in the name of the recording, in metres.
+using SceneOverride = std::pair<std::string, std::string>;
+
+struct ExperimentCase {
+  std::string name;
+  std::string scene;       // file beside the experiment, else under scenes/, else absolute
+  std::string grasp_type;  // pinch | tripod | power | lateral
+  int dim = 3;
+  std::string profile = "human";
+  CaseDemonstration demonstration;
+  std::vector<SceneOverride> set;
+  // Grid: every combination of the values of each scene key is a condition of its own.
+  std::vector<std::pair<std::string, std::vector<std::string>>> variations;
+};
+
+struct Experiment {
+  std::string source;  // file, for messages and for finding scenes beside it
+  std::string text;    // effective YAML, overrides applied, comments dropped
+  std::string name;
+  std::uint64_t seed = 0;
+  int repetitions = 1;
+  std::string demonstrations;           // folder of recordings; empty: none needed
+  bool with_open_hand = false;          // baseline: every trial also with a constant open hand
+  std::vector<std::string> substitute;  // sorted
+  TrialCriteria criteria;
+  RecordOptions record;
+  std::vector<ExperimentCase> cases;
+};
+
+// `path`: a YAML file, or a folder that holds experiment.yaml; where there is none, the same below
+// the folder of shipped experiments. Overrides are `key=value` with dotted paths. Throws Error.
+Experiment ReadExperiment(const std::string& path, const std::vector<std::string>& overrides = {});
+Experiment ParseExperiment(const std::string& text, const std::string& source,
+                           const std::vector<std::string>& overrides = {});
+
+struct PlannedTrial {
+  std::string id;  // TrialIdentity(spec)
+  TrialSpec spec;
+  TrialOutput output;  // what to record; folder still empty
+};
+
+// Every trial, in the order of the file: cases, conditions, demonstrations, repetitions, the open
+// hand right after its trial. Reads all scenes and demonstrations, so bad input shows here. Throws
+// Error, also if two cases hold the same trial.
+std::vector<PlannedTrial> ExpandExperiment(const Experiment& experiment);
+
+}  // namespace springgrasp

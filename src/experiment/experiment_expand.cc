@@ -1,0 +1,166 @@
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/random.h"
+#include "base/yaml_reader.h"
+#include "demonstration/demonstration.h"
+#include "experiment/experiment.h"
+#include "experiment/trial_identity.h"
+
+namespace springgrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file that an experiment names: absolute, beside the experiment, or in a shipped folder.
+std::string FindNamed(const std::string& name, const Experiment& e, const char* shipped_folder) {
+  std::error_code ignored;
+  const fs::path beside = fs::path(e.source).parent_path() / name;
+  const fs::path shipped = fs::path(SourceFolder()) / shipped_folder / name;
+  for (const fs::path& path : {beside, shipped}) {
+    if (fs::exists(path, ignored)) return fs::absolute(path).lexically_normal();
+  }
+  Fail("{}: there is no '{}' beside the experiment or in {}", e.source, name,
+       shipped.parent_path().string());
+}
+
+std::vector<std::string> FilesOf(const Experiment& e, const ExperimentCase& c) {
+  if (!c.demonstration.recorded) return {""};
+  if (!c.demonstration.file.empty()) return {FindNamed(c.demonstration.file, e, "experiments")};
+  ThrowUnless(!e.demonstrations.empty(),
+              "{}: case '{}' takes recordings from a folder; say which, for example "
+              "--set demonstrations=path/to/folder",
+              e.source, c.name);
+  const std::string folder = FindNamed(e.demonstrations, e, "experiments");
+  ThrowUnless(fs::is_directory(folder), "{}: not a folder of demonstrations", folder);
+  std::vector<std::string> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    if (fnmatch(c.demonstration.match.c_str(), name.c_str(), FNM_PERIOD) == 0) {
+      files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  ThrowUnless(!files.empty(), "{}: no file matches '{}' (case '{}' of {})", folder,
+              c.demonstration.match, c.name, e.source);
+  return files;
+}
+
+// "pinch_20mm_1" -> "0.020"
+std::string DepthInName(const std::string& name) {
+  const auto unit = name.find("mm");
+  std::size_t begin = unit;
+  while (unit != std::string::npos && begin > 0 && std::isdigit(name[begin - 1]) != 0) --begin;
+  ThrowUnless(
+      unit != std::string::npos && begin < unit,
+      "{{depth}} is asked for, but the recording's name '{}' holds no number followed by mm", name);
+  return fmt::format("{:.3f}", 1e-3 * std::stod(name.substr(begin, unit - begin)));
+}
+
+std::string FillIn(std::string value, const std::string& demonstration) {
+  const std::string placeholder = "{depth}";
+  for (auto at = value.find(placeholder); at != std::string::npos; at = value.find(placeholder)) {
+    value.replace(at, placeholder.size(), DepthInName(demonstration));
+  }
+  return value;
+}
+
+// Every combination of the values of the varied keys.
+std::vector<std::vector<SceneOverride>> Conditions(const ExperimentCase& c) {
+  std::vector<std::vector<SceneOverride>> conditions = {{}};
+  for (const auto& [key, values] : c.variations) {
+    std::vector<std::vector<SceneOverride>> next;
+    for (const auto& condition : conditions) {
+      for (const std::string& value : values) {
+        next.push_back(condition);
+        next.back().emplace_back(key, value);
+      }
+    }
+    conditions = std::move(next);
+  }
+  return conditions;
+}
+
+std::string Hash(const std::string& file) {
+  return fmt::format("{:016x}", HashText(ReadFile(file)));
+}
+
+// Scene and canonical text of one condition with one demonstration.
+void BuildScene(const Experiment& e, const ExperimentCase& c,
+                const std::vector<SceneOverride>& condition, const std::string& file,
+                TrialSpec& spec) {
+  const std::string path = FindNamed(c.scene, e, "scenes");
+  std::string text = ReadFile(path);
+  ParseScene(text, path);  // messages with the lines of the file
+  std::vector<SceneOverride> overrides = c.set;
+  overrides.insert(overrides.end(), condition.begin(), condition.end());
+  overrides.emplace_back("demonstrator.kind", file.empty() ? "synthesised" : "recorded");
+  overrides.emplace_back("demonstrator.type", c.grasp_type);
+  for (const auto& [key, value] : overrides) {
+    text = ApplyOverride(text, key + "=" + FillIn(value, spec.demonstration));
+  }
+  const std::string key = "demonstrator.file=";
+  spec.scene_text = file.empty() ? text : ApplyOverride(text, key + Hash(file));
+  if (!file.empty()) text = ApplyOverride(text, key + "'" + file + "'");
+  spec.scene = ParseScene(text, path);
+  ThrowUnless(!spec.scene.objects.empty(), "{}: the scene has no object to grasp", path);
+  for (const SceneObject& object : spec.scene.objects) {
+    if (!object.model.empty()) {
+      spec.scene_text += fmt::format("model of {}: {}\n", object.name, Hash(object.model));
+    }
+  }
+  if (!file.empty()) ReadDemonstration(file);
+}
+
+bool Wanted(RecordWhich which, bool first) {
+  return which == RecordWhich::kAll || (which == RecordWhich::kOne && first);
+}
+
+}  // namespace
+
+std::vector<PlannedTrial> ExpandExperiment(const Experiment& e) {
+  std::vector<PlannedTrial> trials;
+  std::map<std::string, std::string> owner;  // identity -> case
+  for (const ExperimentCase& c : e.cases) {
+    const std::vector<std::string> files = FilesOf(e, c);
+    for (const auto& condition : Conditions(c)) {
+      std::string name = c.name;
+      for (const auto& [key, value] : condition) name += fmt::format(" {}={}", key, value);
+      for (const std::string& file : files) {
+        TrialSpec spec;
+        spec.case_name = name;
+        spec.demonstration = file.empty() ? "synthesised" : fs::path(file).stem().string();
+        BuildScene(e, c, condition, file, spec);
+        spec.grasp_type = c.grasp_type;
+        spec.dim = c.dim;
+        spec.profile = c.profile;
+        spec.criteria = e.criteria;
+        spec.substitute = e.substitute;
+        spec.seed = e.seed;
+        for (int i = 0; i < e.repetitions * (e.with_open_hand ? 2 : 1); ++i) {
+          spec.repetition = e.with_open_hand ? i / 2 : i;
+          spec.open_hand = e.with_open_hand && i % 2 == 1;
+          PlannedTrial trial{TrialIdentity(spec), spec, {}};
+          const bool first = i == 0;
+          trial.output.video = Wanted(e.record.videos, first);
+          trial.output.overlay = Wanted(e.record.overlays, first);
+          trial.output.trajectories = Wanted(e.record.trajectories, first);
+          const auto [entry, is_new] = owner.emplace(trial.id, name);
+          ThrowUnless(is_new, "{}: cases '{}' and '{}' hold the same trial", e.source,
+                      entry->second, name);
+          trials.push_back(std::move(trial));
+        }
+      }
+    }
+  }
+  return trials;
+}
+
+}  // namespace springgrasp

@@ -1,0 +1,154 @@
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/yaml_reader.h"
+#include "experiment/experiment.h"
+#include "experiment/experiment_criteria.h"
+
+namespace springgrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kTypes = {"pinch", "tripod", "power", "lateral"};
+
+RecordWhich ReadWhich(YamlReader& yaml, const std::string& key, RecordWhich value) {
+  const std::vector<std::string> names = {"none", "one", "all"};
+  std::string name = names[static_cast<std::size_t>(value)];
+  yaml.Read(key, name, names);
+  return name == "none"  ? RecordWhich::kNone
+         : name == "one" ? RecordWhich::kOne
+                         : RecordWhich::kAll;
+}
+
+CaseDemonstration ReadCaseDemonstration(YamlReader yaml) {
+  CaseDemonstration d;
+  std::string kind = "synthesised";
+  yaml.Read("kind", kind, {"synthesised", "recorded"});
+  d.recorded = kind == "recorded";
+  yaml.Read("file", d.file);
+  yaml.Read("match", d.match);
+  ThrowUnless(d.recorded || (d.file.empty() && d.match.empty()),
+              "{}: file and match are for recorded demonstrations, but kind is synthesised",
+              yaml.Where("kind"));
+  ThrowUnless(!d.recorded || d.file.empty() != d.match.empty(),
+              "{}: a recorded demonstration needs either a file or a match (a pattern such as "
+              "pinch_*.csv for the files of the folder `demonstrations`)",
+              yaml.Where("kind"));
+  yaml.Finish();
+  return d;
+}
+
+ExperimentCase ReadCase(YamlReader& yaml) {
+  ExperimentCase c;
+  yaml.Require("name");
+  yaml.Read("name", c.name);
+  ThrowUnless(!c.name.empty(), "{}: a case needs a name", yaml.Where("name"));
+  yaml.Require("scene");
+  yaml.Read("scene", c.scene);
+  yaml.Require("grasp");
+  yaml.Read("grasp", c.grasp_type, kTypes);
+  yaml.Read("dim", c.dim, {2, 3});
+  yaml.Read("profile", c.profile, {"human", "paper"});
+  c.demonstration = ReadCaseDemonstration(yaml.Child("demonstration"));
+  YamlReader set = yaml.Child("set");
+  for (const std::string& key : set.Keys()) c.set.emplace_back(key, set.Text(key));
+  set.Finish();
+  YamlReader variations = yaml.Child("variations");
+  for (const std::string& key : variations.Keys()) {
+    std::vector<std::string> values;
+    variations.Read(key, values);
+    ThrowUnless(!values.empty(), "{}: {} varies over an empty list", variations.Where(key), key);
+    c.variations.emplace_back(key, values);
+  }
+  variations.Finish();
+  yaml.Finish();
+  return c;
+}
+
+void ReadCriteria(YamlReader yaml, TrialCriteria& criteria) {
+  for (const CriterionField& field : kCriterionFields) {
+    yaml.Read(field.name, criteria.*field.member, field.bounds);
+  }
+  yaml.Finish();
+}
+
+void ReadSubstitute(YamlReader& yaml, std::vector<std::string>& substitute) {
+  std::vector<std::string> names;
+  yaml.Read("substitute", names);
+  const std::set<std::string> allowed(kSubstitutes.begin(), kSubstitutes.end());
+  for (const std::string& name : names) {
+    ThrowUnless(allowed.count(name) > 0, "{}: substitute holds '{}', expected some of {}",
+                yaml.Where("substitute"), name, fmt::join(kSubstitutes, ", "));
+  }
+  const std::set<std::string> sorted(names.begin(), names.end());
+  substitute.assign(sorted.begin(), sorted.end());
+}
+
+// The file that a user means by "first_grasps", "experiments/first_grasps" or a YAML's path.
+std::string FindExperiment(const std::string& path) {
+  ThrowUnless(!path.empty(), "an experiment is a YAML file or a folder holding experiment.yaml");
+  std::error_code ignored;
+  for (const fs::path& base : {fs::path(path), fs::path(SourceFolder()) / "experiments" / path}) {
+    if (fs::is_directory(base, ignored)) return base / "experiment.yaml";
+    if (fs::is_regular_file(base, ignored)) return base;
+  }
+  Fail("{}: no such experiment (a YAML file, or a folder holding experiment.yaml)", path);
+}
+
+}  // namespace
+
+Experiment ReadExperiment(const std::string& path, const std::vector<std::string>& overrides) {
+  const std::string file = FindExperiment(path);
+  return ParseExperiment(ReadFile(file), file, overrides);
+}
+
+Experiment ParseExperiment(const std::string& text, const std::string& source,
+                           const std::vector<std::string>& overrides) {
+  Experiment e;
+  e.source = source;
+  // Read the file as it is first: its messages then carry the lines that the user sees.
+  if (!overrides.empty()) ParseExperiment(text, source);
+  std::string effective = text;
+  for (const std::string& override_text : overrides) {
+    effective = ApplyOverride(effective, override_text);
+  }
+  YamlReader yaml =
+      YamlReader::FromText(effective, overrides.empty() ? source : source + " (with --set)");
+  e.text = NormaliseYaml(effective);
+  yaml.Require("name");
+  yaml.Read("name", e.name);
+  double seed = 0;
+  yaml.Require("seed");
+  yaml.Read("seed", seed, {0, 9007199254740992.0});
+  ThrowUnless(seed == std::floor(seed), "{}: seed is {}, expected a whole number",
+              yaml.Where("seed"), seed);
+  e.seed = static_cast<std::uint64_t>(seed);
+  yaml.Read("repetitions", e.repetitions, {1, 1000000});
+  yaml.Read("demonstrations", e.demonstrations);
+  std::string baseline = "none";
+  yaml.Read("baseline", baseline, {"none", "open_hand"});
+  e.with_open_hand = baseline == "open_hand";
+  ReadSubstitute(yaml, e.substitute);
+  ReadCriteria(yaml.Child("criteria"), e.criteria);
+  YamlReader record = yaml.Child("record");
+  e.record.videos = ReadWhich(record, "videos", e.record.videos);
+  e.record.overlays = ReadWhich(record, "overlays", e.record.overlays);
+  e.record.trajectories = ReadWhich(record, "trajectories", e.record.trajectories);
+  record.Finish();
+  yaml.Require("cases");
+  std::set<std::string> names;
+  for (YamlReader& child : yaml.Children("cases")) {
+    e.cases.push_back(ReadCase(child));
+    ThrowUnless(names.insert(e.cases.back().name).second, "{}: a second case is named '{}'",
+                child.Where("name"), e.cases.back().name);
+  }
+  ThrowUnless(!e.cases.empty(), "{}: an experiment needs at least one case", yaml.Where("cases"));
+  yaml.Finish();
+  return e;
+}
+
+}  // namespace springgrasp

@@ -1,0 +1,25 @@
+#include "experiment/trial_identity.h"
+
+#include <fmt/format.h>
+
+#include "base/random.h"
+#include "experiment/experiment_criteria.h"
+
+namespace springgrasp {
+
+std::string CanonicalText(const TrialSpec& spec) {
+  std::string text = fmt::format(
+      "grasp: {}\ndim: {}\nprofile: {}\nsubstitute: {}\nopen_hand: {}\nseed: {}\nrepetition: {}\n",
+      spec.grasp_type, spec.dim, spec.profile, fmt::join(spec.substitute, ","), spec.open_hand,
+      spec.seed, spec.repetition);
+  for (const CriterionField& field : kCriterionFields) {
+    text += fmt::format("criteria.{}: {}\n", field.name, spec.criteria.*field.member);
+  }
+  return text + spec.scene_text;
+}
+
+std::string TrialIdentity(const TrialSpec& spec) {
+  return fmt::format("{:016x}", HashText(CanonicalText(spec)));
+}
+
+}  // namespace springgrasp

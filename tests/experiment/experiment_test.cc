@@ -1,0 +1,166 @@
+#include "experiment/experiment.h"
+
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "base/error.h"
+#include "experiment/small_experiment.h"
+#include "experiment/trial_identity.h"
+
+namespace springgrasp {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string MessageOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "(no error)";
+}
+
+std::set<std::string> Ids(const Experiment& experiment) {
+  std::set<std::string> ids;
+  for (const PlannedTrial& trial : ExpandExperiment(experiment)) ids.insert(trial.id);
+  return ids;
+}
+
+TEST(ExperimentTest, ExpandsToEveryCaseAndRepetition) {
+  const TemporaryFolder folder;
+  const auto trials = ExpandExperiment(SmallExperiment(folder));
+  ASSERT_EQ(trials.size(), 10u);
+  EXPECT_EQ(trials[0].spec.case_name, "light");
+  EXPECT_EQ(trials[9].spec.case_name, "heavy");
+  EXPECT_EQ(trials[9].spec.repetition, 4);
+  EXPECT_DOUBLE_EQ(trials[0].spec.scene.objects[0].mass, 0.1);
+  EXPECT_DOUBLE_EQ(trials[9].spec.scene.objects[0].mass, 0.5);
+  EXPECT_EQ(Ids(SmallExperiment(folder)).size(), 10u);
+}
+
+TEST(ExperimentTest, IdentityFollowsWhatMattersAndNothingElse) {
+  const TemporaryFolder folder;
+  const auto ids = Ids(SmallExperiment(folder));
+  const std::string text = kSmallExperiment;
+  EXPECT_EQ(Ids(SmallExperiment(folder, text + "record: {videos: all}\n")), ids);
+  EXPECT_EQ(Ids(SmallExperiment(folder, "# a comment\n" + text, {"name=renamed"})), ids);
+  for (const std::string change : {"seed=8", "criteria.hold=1.5", "substitute=[k]", "cases.0.dim=2",
+                                   "cases.0.profile=paper", "cases.0.grasp=power"}) {
+    EXPECT_NE(Ids(SmallExperiment(folder, text, {change})), ids) << change;
+  }
+  folder.Write("scene.yaml", std::string("# a comment\n") + kSmallScene);
+  EXPECT_EQ(Ids(ReadExperiment(folder / "experiment.yaml")), ids);
+}
+
+TEST(ExperimentTest, MoreRepetitionsOrCasesChangeNoOtherTrial) {
+  const TemporaryFolder folder;
+  const auto ids = Ids(SmallExperiment(folder));
+  const auto more = Ids(SmallExperiment(folder, kSmallExperiment, {"repetitions=6"}));
+  EXPECT_EQ(more.size(), 12u);
+  EXPECT_TRUE(std::includes(more.begin(), more.end(), ids.begin(), ids.end()));
+}
+
+TEST(ExperimentTest, VariationsMakeAGrid) {
+  const TemporaryFolder folder;
+  const auto trials = ExpandExperiment(SmallExperiment(
+      folder,
+      "name: grid\nseed: 1\ncases:\n  - name: c\n    scene: scene.yaml\n    grasp: pinch\n"
+      "    variations: {objects.0.mass: [0.1, 0.2, 0.3], physics.impratio: [5, 10]}\n"));
+  ASSERT_EQ(trials.size(), 6u);
+  EXPECT_EQ(trials[0].spec.case_name, "c objects.0.mass=0.1 physics.impratio=5");
+  EXPECT_DOUBLE_EQ(trials[5].spec.scene.objects[0].mass, 0.3);
+  EXPECT_DOUBLE_EQ(trials[5].spec.scene.physics.impratio, 10);
+}
+
+TEST(ExperimentTest, OpenHandStandsBesideEachTrialWithTheSameDraws) {
+  const TemporaryFolder folder;
+  const auto trials =
+      ExpandExperiment(SmallExperiment(folder, kSmallExperiment, {"baseline=open_hand"}));
+  ASSERT_EQ(trials.size(), 20u);
+  EXPECT_FALSE(trials[2].spec.open_hand);
+  EXPECT_TRUE(trials[3].spec.open_hand);
+  EXPECT_EQ(trials[2].spec.repetition, trials[3].spec.repetition);
+  EXPECT_NE(trials[2].id, trials[3].id);
+}
+
+TEST(ExperimentTest, RecordsOnePerCaseWhereAsked) {
+  const TemporaryFolder folder;
+  int videos = 0;
+  for (const auto& trial :
+       ExpandExperiment(SmallExperiment(folder, kSmallExperiment, {"record={videos: one}"}))) {
+    videos += trial.output.video;
+  }
+  EXPECT_EQ(videos, 2);
+}
+
+constexpr const char* kRecording = R"(# frame: recording
+t,wrist_x,wrist_y,wrist_z,wrist_qw,wrist_qx,wrist_qy,wrist_qz,thumb_x,thumb_y,thumb_z,index_x,index_y,index_z,middle_x,middle_y,middle_z,ring_x,ring_y,ring_z,pinkie_x,pinkie_y,pinkie_z
+)";
+
+std::string Recording(double z) {
+  std::string text = kRecording;
+  for (int i = 0; i < 20; ++i) {
+    text +=
+        fmt::format("{},,,,,,,,{},0,{},{},0.05,0.1,,,,,,,,,\n", 0.01 * i, 0.01 * i, z, 0.01 * i);
+  }
+  return text;
+}
+
+TEST(ExperimentTest, TakesEveryMatchingRecordingAndItsDepth) {
+  const TemporaryFolder folder;
+  folder.Write("pinch_30mm_1.csv", Recording(0.1));
+  folder.Write("pinch_20mm_1.csv", Recording(0.2));
+  folder.Write("other.csv", Recording(0.3));
+  const std::string text =
+      "name: recorded\nseed: 1\ndemonstrations: .\ncases:\n"
+      "  - name: pinch\n    scene: scene.yaml\n    grasp: pinch\n"
+      "    demonstration: {kind: recorded, match: 'pinch_*.csv'}\n"
+      "    set: {objects.0.shape: 'box:{depth}x0.04x0.1'}\n";
+  const auto trials = ExpandExperiment(SmallExperiment(folder, text));
+  ASSERT_EQ(trials.size(), 2u);
+  EXPECT_EQ(trials[0].spec.demonstration, "pinch_20mm_1");
+  EXPECT_DOUBLE_EQ(trials[0].spec.scene.objects[0].shape->size.x(), 0.02);
+  EXPECT_EQ(trials[0].spec.scene.demonstrator.kind, "recorded");
+  EXPECT_EQ(trials[0].spec.scene.demonstrator.file, folder / "pinch_20mm_1.csv");
+
+  // The content of the recording is part of the identity, the folder it lies in is not.
+  const auto before = Ids(SmallExperiment(folder, text));
+  folder.Write("pinch_30mm_1.csv", Recording(0.15));
+  EXPECT_NE(Ids(SmallExperiment(folder, text)), before);
+  const TemporaryFolder moved;
+  moved.Write("pinch_30mm_1.csv", Recording(0.1));
+  moved.Write("pinch_20mm_1.csv", Recording(0.2));
+  EXPECT_EQ(Ids(SmallExperiment(moved, text)), before);
+}
+
+TEST(ExperimentTest, BadInputSaysWhereAndWhatWouldBeValid) {
+  const TemporaryFolder folder;
+  const std::string text = kSmallExperiment;
+  const auto message = [&](const std::string& content, std::vector<std::string> overrides = {}) {
+    return MessageOf([&] { ExpandExperiment(SmallExperiment(folder, content, overrides)); });
+  };
+  EXPECT_THAT(message(text + "sead: 3\n"),
+              AllOf(HasSubstr("experiment.yaml:7"), HasSubstr("sead"), HasSubstr("seed")));
+  EXPECT_THAT(message(text, {"repetitions=0"}), HasSubstr("repetitions is 0"));
+  EXPECT_THAT(message(text, {"seed=1.5"}), HasSubstr("seed is 1.5"));
+  EXPECT_THAT(message(text, {"cases.0.grasp=punch"}), HasSubstr("pinch, tripod, power, lateral"));
+  EXPECT_THAT(message(text, {"criteria.hold=-1"}), HasSubstr("criteria.hold is -1"));
+  EXPECT_THAT(message(text, {"substitute=[truth]"}), HasSubstr("finger_joints"));
+  EXPECT_THAT(message(text, {"cases.1.set={}"}), HasSubstr("hold the same trial"));
+  EXPECT_THAT(message(text, {"cases.1.set={objects.0.mass: -1}"}), HasSubstr("mass is -1"));
+  EXPECT_THAT(message(text, {"cases.1.set={objects.0.wait: 1}"}), HasSubstr("unknown key 'wait'"));
+  EXPECT_THAT(message(text, {"cases.1.scene=nowhere.yaml"}), HasSubstr("nowhere.yaml"));
+  EXPECT_THAT(message(text, {"cases.0.demonstration={kind: recorded}"}), HasSubstr("match"));
+  EXPECT_THAT(message(text, {"cases.0.demonstration={kind: recorded, match: '*.csv'}"}),
+              HasSubstr("--set demonstrations="));
+  EXPECT_THAT(message(text, {"cases.0.name=heavy"}), HasSubstr("a second case"));
+  EXPECT_THAT(message(""), HasSubstr("empty"));
+  EXPECT_THAT(MessageOf([] { ReadExperiment("no/such/experiment"); }),
+              HasSubstr("no such experiment"));
+}
+
+}  // namespace
+}  // namespace springgrasp
