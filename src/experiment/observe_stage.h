@@ -1,0 +1,46 @@
+// The display volume before the robot's eyes: robot, demonstrator's hand and its object, placed by
+// kinematics alone and seen through the wide-angle pair.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "base/shape.h"
+#include "demonstration/hand_motion.h"
+#include "experiment/demonstrator_hand.h"
+#include "render/camera_renderer.h"
+#include "sim/scene.h"
+#include "sim/simulation.h"
+#include "vision/camera_model.h"
+
+namespace springgrasp {
+
+class ObserveStage {
+ public:
+  // The scene's robot, table and lights; the head looks straight ahead and a little down, the eyes
+  // converge on the display volume. `shown` is drawn where Show() puts it.
+  ObserveStage(const Scene& scene, const std::optional<Shape>& shown);
+
+  const DemonstratorHand& hand() const { return hand_; }
+  const StereoCameras& eyes() const { return eyes_; }
+  const mjModel& model() const { return simulation_.model(); }
+
+  // Puts hand and object as they are at one instant.
+  void Show(const HandMotionSample& sample, const std::optional<DemonstratedObject>& object);
+  cv::Mat Picture(int eye);  // CV_8UC3, BGR; 0 left, 1 right
+  // Part of each cap that is seen by an eye, 0..1.
+  PerFinger<double> VisibleCaps(int eye);
+
+ private:
+  Simulation simulation_;
+  DemonstratorHand hand_;
+  StereoCameras eyes_;
+  std::unique_ptr<CameraRenderer> renderer_;
+  std::vector<int> joint_addresses_;  // of the hand's joints in qpos
+  std::vector<int> caps_;             // geom ids
+  bool object_drawn_ = false;
+};
+
+}  // namespace springgrasp
