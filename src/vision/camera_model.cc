@@ -119,13 +119,13 @@ std::optional<TriangulatedPoint> Triangulate(const StereoCameras& cameras,
 double EpipolarDistance(const StereoCameras& cameras, const Eigen::Vector2d& left,
                         const Eigen::Vector2d& right) {
   // Normal of the epipolar plane, seen from the right camera: its trace is the line.
-  const Eigen::Vector3d base =
-      cameras.right.X_WC.translation() - cameras.left.X_WC.translation();
-  const Eigen::Vector3d normal_R = cameras.right.X_WC.linear().transpose() *
-                                   base.cross(PixelRay(cameras.left, left));
+  const Eigen::Vector3d base = cameras.right.X_WC.translation() - cameras.left.X_WC.translation();
+  const Eigen::Vector3d normal_R =
+      cameras.right.X_WC.linear().transpose() * base.cross(PixelRay(cameras.left, left));
   const Eigen::Vector3d ray_W = PixelRay(cameras.right, right);
   const Eigen::Vector3d ray_R = cameras.right.X_WC.linear().transpose() * ray_W;
-  const double across = std::hypot(normal_R.x() / cameras.right.fx, normal_R.y() / cameras.right.fy);
+  const double across =
+      std::hypot(normal_R.x() / cameras.right.fx, normal_R.y() / cameras.right.fy);
   return across < 1e-15 ? 0 : std::abs(normal_R.dot(ray_R / ray_R.z())) / across;
 }
 

@@ -13,11 +13,11 @@
 namespace springgrasp {
 
 struct CameraModel {
-  int width = 640, height = 480;                // px
-  double fx = 540.5, fy = 540.5;                // px
-  double cx = 319.5, cy = 239.5;                // px
-  std::array<double, 8> distortion = {};        // OpenCV's k1 k2 p1 p2 k3 k4 k5 k6; zeros: pinhole
-  Pose X_WC = Pose::Identity();                 // pose of the camera in W
+  int width = 640, height = 480;          // px
+  double fx = 540.5, fy = 540.5;          // px
+  double cx = 319.5, cy = 239.5;          // px
+  std::array<double, 8> distortion = {};  // OpenCV's k1 k2 p1 p2 k3 k4 k5 k6; zeros: pinhole
+  Pose X_WC = Pose::Identity();           // pose of the camera in W
   bool distorted() const;
 };
 

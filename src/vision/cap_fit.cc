@@ -33,7 +33,7 @@ std::optional<ImageCapsule> ProjectCapsule(const CameraModel& camera, const Eige
                                            const Eigen::Vector3d& axis_W, const CapShape& shape) {
   ImageCapsule capsule;
   for (int e = 0; e < 2; ++e) {
-    const Eigen::Vector3d p_WE = p_W + (e == 0 ? -1 : 1) * shape.half_segment() * axis_W;
+    const Eigen::Vector3d p_WE = p_W + (e == 0 ? shape.back() : shape.front()) * axis_W;
     const auto pixel = Project(camera, p_WE, &capsule.J[e]);
     if (!pixel) return std::nullopt;
     capsule.end[e] = *pixel;
@@ -68,7 +68,7 @@ CapContour TraceCap(const cv::Mat& bgr, const MarkerColour& colour, const Eigen:
   const auto purity = [&](const Eigen::Vector3f& c) {
     return colour.chroma.dot(c) / (c.sum() + 12.0F);
   };
-  constexpr double kStep = 0.5;    // px
+  constexpr double kStep = 0.5;  // px
   constexpr int kMaxSamples = 96;
   std::array<Eigen::Vector3f, kMaxSamples> profile;
   const int wanted = std::min(kMaxSamples, static_cast<int>(reach_px / kStep) + 1);
@@ -116,12 +116,11 @@ std::optional<CapFit> FitCap(const StereoCameras& cameras,
   CapFit fit;
   fit.p_W = start_W;
   fit.axis_W = axis_W.normalized();
-  const double half = shape.half_segment();
   for (int iteration = 0; iteration <= options.iterations; ++iteration) {
     const Eigen::Vector3d side = fit.axis_W.unitOrthogonal(), up = fit.axis_W.cross(side);
     Eigen::Matrix<double, 5, 5> H = Eigen::Matrix<double, 5, 5>::Zero();
     Eigen::Matrix<double, 5, 1> g = Eigen::Matrix<double, 5, 1>::Zero();
-    double sum_squares = 0;
+    double sum_squares = 0, sum_radius = 0, sum_weights = 0;
     int agreeing = 0;
     // Wide at first, so that a start some pixels off is pulled in.
     const double scale = iteration < 2 ? 3 * options.inlier_px : options.inlier_px;
@@ -138,14 +137,18 @@ std::optional<CapFit> FitCap(const StereoCameras& cameras,
           ++agreeing_here;
           sum_squares += d * d;
         }
-        const double ratio = d / scale, shrink = 1 + ratio * ratio;
+        const double ratio = d / (d > 0 ? scale : scale * options.hidden_px / options.inlier_px),
+                     shrink = 1 + ratio * ratio;
         const double weight = 1 / (shrink * shrink);
+        sum_radius += weight * shape.radius * (1 + d / capsule->radius[0]);
+        sum_weights += weight;
         const Eigen::Matrix<double, 1, 3> J0 = -(1 - t) * normal.transpose() * capsule->J[0];
         const Eigen::Matrix<double, 1, 3> J1 = -t * normal.transpose() * capsule->J[1];
         Eigen::Matrix<double, 1, 5> J;
         J.head<3>() = J0 + J1;
-        J[3] = half * (J1 - J0).dot(side);
-        J[4] = half * (J1 - J0).dot(up);
+        const Eigen::Vector3d turn = shape.front() * J1 + shape.back() * J0;
+        J[3] = turn.dot(side);
+        J[4] = turn.dot(up);
         H += weight * J.transpose() * J;
         g += weight * d * J.transpose();
       }
@@ -153,6 +156,7 @@ std::optional<CapFit> FitCap(const StereoCameras& cameras,
       fit.agreement[view] = static_cast<double>(agreeing_here) / kContourRays;
       if (iteration == options.iterations && agreeing_here < 6) return std::nullopt;
     }
+    fit.radius = sum_weights > 0 ? sum_radius / sum_weights : shape.radius;
     fit.rms_px = agreeing > 0 ? std::sqrt(sum_squares / agreeing) : 1e9;
     if (iteration == options.iterations) break;
     // Prior on the axis: small deviation from the expected one.

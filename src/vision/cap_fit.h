@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -13,12 +14,16 @@
 
 namespace springgrasp {
 
-// A cap: all points within `radius` of a segment along the finger. `length` is end to end, so
-// length = 2 radius is a sphere. The centre is the middle of the segment.
+// A cap: all points within `radius` of a segment along the finger.
 struct CapShape {
-  double radius = 0;  // m; 0: found in the first frame
-  double length = 0;  // m; 0: a sphere
-  double half_segment() const { return length > 2 * radius ? 0.5 * length - radius : 0; }
+  double radius = 0;     // m; 0: found in the first frames
+  double length = 0;     // m, end to end (2 radius: a sphere); 0: 2.5 radius, a thimble's
+  double to_centre = 0;  // m, from the tip's end to the point that is tracked; 0: the middle
+  double full_length() const { return length > 0 ? std::max(length, 2 * radius) : 2.5 * radius; }
+  double centre_from_tip() const { return to_centre > 0 ? to_centre : 0.5 * full_length(); }
+  // Ends of the segment along the axis, from the tracked point: behind it and before it, m.
+  double back() const { return centre_from_tip() - full_length() + radius; }
+  double front() const { return centre_from_tip() - radius; }
 };
 
 inline constexpr int kContourRays = 24;
@@ -37,15 +42,17 @@ CapContour TraceCap(const cv::Mat& bgr, const MarkerColour& colour, const Eigen:
                     double reach_px);
 
 struct CapFit {
-  Eigen::Vector3d p_W;               // centre of the whole cap, m
-  Eigen::Vector3d axis_W;            // unit, towards the fingertip
-  double rms_px = 0;                 // of the points that agree with the outline
+  Eigen::Vector3d p_W;                   // centre of the whole cap, m
+  Eigen::Vector3d axis_W;                // unit, towards the fingertip
+  double rms_px = 0;                     // of the points that agree with the outline
   std::array<double, 2> agreement = {};  // share of all rays that agree, per view
+  double radius = 0;                     // m, that the agreeing points would like best
 };
 
 struct CapFitOptions {
-  double axis_prior = 0.5;       // weight of the expected axis: px of outline per radian
-  double inlier_px = 1.0;        // scale of the robust weight (Geman-McClure)
+  double axis_prior = 0.5;  // weight of the expected axis: px of outline per radian
+  double inlier_px = 1.0;   // scale of the robust weight (Geman-McClure) outside the outline
+  double hidden_px = 0.7;   // the same inside it: the edge of whatever hides the cap
   int iterations = 6;
 };
 

@@ -16,12 +16,17 @@ struct View {
   cv::Mat likelihood, bins;  // whole picture; valid in `roi`
   cv::Rect roi;
   ParticleSet particles;
-  Regions region;            // mode of each finger, px
-  Regions motion;            // last displacement, px per frame
+  Regions region;  // mode of each finger, px
+  Regions motion;  // last displacement, px per frame
   PerFinger<bool> active = {};
   PerFinger<double> mass = {};        // found over expected cap pixels
   PerFinger<double> similarity = {};  // of the colour
 };
+
+constexpr int kRadiusFrames = 20;  // over which a cap's size is averaged
+
+constexpr double kHintShare = 0.5;     // of the hand fit in a finger's direction
+constexpr double kUsualDepth = -0.45;  // of a finger's direction along the optical axis
 
 // A finger's state between the views.
 struct FingerState {
@@ -29,6 +34,8 @@ struct FingerState {
   Eigen::Vector3d v_W = Eigen::Vector3d::Zero();  // m per frame
   Eigen::Vector3d axis_W = Eigen::Vector3d::UnitX();
   int lost_frames = 0;
+  double radius = 0;  // m, of this cap
+  int radius_count = 0;
 };
 
 }  // namespace
@@ -44,6 +51,7 @@ struct FingertipTracker::Impl {
   TrackerOptions options;
   MarkerColour colour;
   CapShape cap;
+  SkinModel skin;
   bool started = false;
   std::array<View, 2> views;
   PerFinger<FingerState> fingers;
@@ -66,15 +74,13 @@ struct FingertipTracker::Impl {
 
   void CheckSize(const cv::Mat& picture, int v) const {
     const CameraModel& camera = cameras.view(v);
-    ThrowUnless(picture.type() == CV_8UC3 && picture.cols == camera.width &&
-                    picture.rows == camera.height,
-                "{} picture is {}x{}, expected {}x{} BGR as its camera is calibrated for",
-                v == 0 ? "left" : "right", picture.cols, picture.rows, camera.width, camera.height);
+    ThrowUnless(
+        picture.type() == CV_8UC3 && picture.cols == camera.width && picture.rows == camera.height,
+        "{} picture is {}x{}, expected {}x{} BGR as its camera is calibrated for",
+        v == 0 ? "left" : "right", picture.cols, picture.rows, camera.width, camera.height);
   }
 
-  cv::Rect Whole(int v) const {
-    return {0, 0, cameras.view(v).width, cameras.view(v).height};
-  }
+  cv::Rect Whole(int v) const { return {0, 0, cameras.view(v).width, cameras.view(v).height}; }
 
   double DepthOf(int v, const Eigen::Vector3d& p_W) const {
     const Pose& X_WC = cameras.view(v).X_WC;
@@ -85,6 +91,13 @@ struct FingertipTracker::Impl {
     return cameras.view(v).fx * cap.radius / DepthOf(v, p_W);
   }
 
+  // The shape of finger f's cap: caps of one kind differ a little in size.
+  CapShape ShapeOf(int f) const {
+    CapShape shape = cap;
+    shape.radius = fingers[f].radius;
+    return shape;
+  }
+
   std::optional<TrackedFrame> Start(const cv::Mat& left, const cv::Mat& right);
   TrackedFrame Update(const cv::Mat& left, const cv::Mat& right, RandomEngine& engine);
   void TrackView(int v, const cv::Mat& bgr, RandomEngine& engine);
@@ -93,6 +106,7 @@ struct FingertipTracker::Impl {
   void Label(const PerFinger<Eigen::Vector3d>& p_WCaps, const PerFinger<int>& order);
   TrackedFrame Measure(const std::array<const cv::Mat*, 2>& pictures);
   Eigen::Vector2d PalmPixel(int v) const;
+  Eigen::Vector3d ExpectedAxis(const std::array<const cv::Mat*, 2>& pictures, int f) const;
 };
 
 Eigen::Vector2d FingertipTracker::Impl::PalmPixel(int v) const {
@@ -137,27 +151,30 @@ std::optional<TrackedFrame> FingertipTracker::Impl::Start(const cv::Mat& left,
   if (cap.radius <= 0) cap.radius = radius;
 
   // The palm: widest place of the skin near the caps, else the middle of the caps' arc.
-  const SkinModel skin = LearnSkin(left, colour, cap_px, radius_px);
+  skin = LearnSkin(left, colour, cap_px, radius_px);
   HandMask hand;
   SegmentHand(left, skin, colour, cap_px, radius_px, Whole(0), 2, hand);
-  Eigen::Vector2d palm = PalmCentre(hand, cap_px, radius_px, 16 * radius_px)
-                             .value_or(PalmFromCaps(caps_left));
+  Eigen::Vector2d palm =
+      PalmCentre(hand, cap_px, radius_px, 16 * radius_px).value_or(PalmFromCaps(caps_left));
   const PerFinger<int> order = LabelFingers(caps_left, palm, options.hand);
 
   double depth = 0;
   for (int f = 0; f < kNumFingers; ++f) {
     const MarkerPair& pair = (*chosen)[order[f]];
     fingers[f] = FingerState();
+    fingers[f].radius = cap.radius;
     fingers[f].p_W = pair.point.p_WQ;
     depth += DepthOf(0, pair.point.p_WQ) / kNumFingers;
     views[0].region[f] = blobs[0][pair.left].centre;
     views[1].region[f] = blobs[1][pair.right].centre;
   }
   const Eigen::Vector3d ray = PixelRay(cameras.left, palm);
-  p_WPalm = cameras.left.X_WC.translation() +
-            ray * (depth / cameras.left.X_WC.linear().col(2).dot(ray));
+  p_WPalm =
+      cameras.left.X_WC.translation() + ray * (depth / cameras.left.X_WC.linear().col(2).dot(ray));
   for (int f = 0; f < kNumFingers; ++f) {
-    fingers[f].axis_W = (fingers[f].p_W - p_WPalm).normalized();
+    fingers[f].axis_W =
+        (fingers[f].p_W - p_WPalm).normalized() + kUsualDepth * cameras.left.X_WC.linear().col(2);
+    fingers[f].axis_W.normalize();
   }
   for (int v = 0; v < 2; ++v) {
     View& view = views[v];
@@ -190,7 +207,8 @@ void FingertipTracker::Impl::Judge(int v) {
     view.mass[f] = std::min(1.0, view.mass[f] / (std::numbers::pi * r * r));
     const Histogram histogram = RegionHistogram(view.bins, view.region[f], 0.8 * r);
     view.similarity[f] = Bhattacharyya(histogram, colour.model);
-    view.active[f] = view.mass[f] >= options.min_mass && view.similarity[f] >= options.min_similarity;
+    view.active[f] =
+        view.mass[f] >= options.min_mass && view.similarity[f] >= options.min_similarity;
   }
 }
 
@@ -240,8 +258,9 @@ void FingertipTracker::Impl::Search(const std::array<const cv::Mat*, 2>&) {
     if (!doubtful[f]) {
       const auto point = Triangulate(cameras, views[0].region[f], views[1].region[f]);
       const double reach = 0.03 + 3 * fingers[f].v_W.norm();
-      doubtful[f] = !point || EpipolarDistance(cameras, views[0].region[f], views[1].region[f]) >
-                                  options.max_epipolar_px ||
+      doubtful[f] = !point ||
+                    EpipolarDistance(cameras, views[0].region[f], views[1].region[f]) >
+                        options.max_epipolar_px ||
                     (point->p_WQ - fingers[f].p_W - fingers[f].v_W).norm() > reach;
     }
   }
@@ -271,8 +290,8 @@ void FingertipTracker::Impl::Search(const std::array<const cv::Mat*, 2>&) {
       if (doubtful[f]) continue;
       const Eigen::Vector2d& c = views[v].region[f];
       const int reach = static_cast<int>(std::ceil(1.45 * r));
-      const cv::Rect box = cv::Rect(static_cast<int>(c.x()) - reach, static_cast<int>(c.y()) - reach,
-                                    2 * reach + 1, 2 * reach + 1) &
+      const cv::Rect box = cv::Rect(static_cast<int>(c.x()) - reach,
+                                    static_cast<int>(c.y()) - reach, 2 * reach + 1, 2 * reach + 1) &
                            Whole(v);
       for (int y = box.y; y < box.y + box.height; ++y) {
         for (int x = box.x; x < box.x + box.width; ++x) {
@@ -305,8 +324,7 @@ void FingertipTracker::Impl::Search(const std::array<const cv::Mat*, 2>&) {
         if (!point) continue;
         const double distance = (point->p_WQ - expected).norm() / reach;
         if (distance > 1) continue;
-        choices[f].push_back({i, j, point->p_WQ,
-                              distance * distance + 0.05 * off * off});
+        choices[f].push_back({i, j, point->p_WQ, distance * distance + 0.05 * off * off});
       }
     }
   }
@@ -336,8 +354,8 @@ void FingertipTracker::Impl::Search(const std::array<const cv::Mat*, 2>&) {
     for (const Choice& choice : choices[f]) {
       bool taken = false;
       for (int g = 0; g < f; ++g) {
-        taken = taken || (current[g] != nullptr && (current[g]->left == choice.left ||
-                                                    current[g]->right == choice.right));
+        taken = taken || (current[g] != nullptr &&
+                          (current[g]->left == choice.left || current[g]->right == choice.right));
       }
       if (taken) continue;
       current[f] = &choice;
@@ -369,6 +387,29 @@ void FingertipTracker::Impl::Search(const std::array<const cv::Mat*, 2>&) {
   }
 }
 
+// The finger's direction: in the picture plane away from the skin next to the cap, in depth as
+// before.
+Eigen::Vector3d FingertipTracker::Impl::ExpectedAxis(const std::array<const cv::Mat*, 2>& pictures,
+                                                     int f) const {
+  const Eigen::Vector3d& before = fingers[f].axis_W;
+  Eigen::Vector3d across = Eigen::Vector3d::Zero();
+  for (int v = 0; v < 2; ++v) {
+    if (!views[v].active[f]) continue;
+    const double r = RadiusPx(v, fingers[f].p_W);
+    const Eigen::Vector2d away = -SkinDirection(*pictures[v], skin, views[v].region[f], r);
+    across += 0.5 * cameras.view(v).X_WC.linear() * Eigen::Vector3d(away.x(), away.y(), 0);
+  }
+  const double strength = across.norm();
+  if (strength < 0.2) return before;
+  const Eigen::Vector3d forward = cameras.left.X_WC.linear().col(2);
+  // Fingers of a palm that faces the camera bend towards it: a weak pull, which outlines overrule.
+  const double depth = 0.85 * before.dot(forward) + 0.15 * kUsualDepth;
+  const Eigen::Vector3d flat = across - across.dot(forward) * forward;
+  const Eigen::Vector3d seen =
+      depth * forward + std::sqrt(std::max(0.0, 1 - depth * depth)) * flat.normalized();
+  return (before + std::min(1.0, 1.5 * strength) * seen).normalized();
+}
+
 // Positions in space from the regions of both views.
 TrackedFrame FingertipTracker::Impl::Measure(const std::array<const cv::Mat*, 2>& pictures) {
   TrackedFrame frame;
@@ -390,15 +431,21 @@ TrackedFrame FingertipTracker::Impl::Measure(const std::array<const cv::Mat*, 2>
       for (int v = 0; v < 2; ++v) {
         const double r = RadiusPx(v, *out.p_W);
         contours[v] = TraceCap(*pictures[v], colour, *out.pixel[v],
-                               2.2 * r * std::max(1.0, cap.length / (2 * cap.radius)) + 4);
+                               1.1 * r * cap.full_length() / cap.radius + 4);
       }
-      const auto fit = FitCap(cameras, contours, cap, *out.p_W, fingers[f].axis_W);
+      const auto fit = FitCap(cameras, contours, ShapeOf(f), *out.p_W, ExpectedAxis(pictures, f));
       // A fit that wanders off was led by something else than this cap.
       if (fit && (fit->p_W - *out.p_W).norm() < 0.025) {
         out.p_W = fit->p_W;
         out.axis_W = fit->axis_W;
         agreement = std::min(1.0, 1.6 * std::min(fit->agreement[0], fit->agreement[1]));
         for (int v = 0; v < 2; ++v) out.pixel[v] = Project(cameras.view(v), fit->p_W);
+        // A running mean over the first frames in which nearly the whole outline is seen.
+        FingerState& state = fingers[f];
+        if (agreement > 0.9 && state.radius_count < kRadiusFrames) {
+          const double radius = std::clamp(fit->radius, 0.85 * cap.radius, 1.15 * cap.radius);
+          state.radius += (radius - state.radius) / (2 + state.radius_count++);
+        }
       } else {
         agreement = 0.3;
       }
@@ -477,7 +524,20 @@ TrackedFrame FingertipTracker::Update(const cv::Mat& left, const cv::Mat& right,
 }
 
 bool FingertipTracker::started() const { return impl_->started; }
-void FingertipTracker::SetPalm(const Eigen::Vector3d& p_WPalm) { impl_->p_WPalm = p_WPalm; }
+
+void FingertipTracker::SetHint(const HandModel& model, const HandFit& fit) {
+  if (!fit.has_orientation) return;
+  // The palm's middle lies half way from the wrist to the knuckles, 4 cm along x.
+  impl_->p_WPalm = fit.X_WH * Eigen::Vector3d(0.045 * fit.scale, 0, 0);
+  for (int f = 0; f < kNumFingers; ++f) {
+    FingerState& state = impl_->fingers[f];
+    const Eigen::Vector3d axis_W = FittedAxis(model, fit, f);
+    state.axis_W = (state.axis_W + kHintShare * (axis_W - state.axis_W)).normalized();
+    if (state.lost_frames > 0) state.p_W = FittedTip(model, fit, f);
+  }
+}
+
+const SkinModel& FingertipTracker::skin() const { return impl_->skin; }
 const CapShape& FingertipTracker::cap() const { return impl_->cap; }
 const MarkerColour& FingertipTracker::colour() const { return impl_->colour; }
 const ParticleSet& FingertipTracker::particles(int view) const {

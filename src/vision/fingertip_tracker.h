@@ -13,35 +13,37 @@
 #include "base/random.h"
 #include "vision/camera_model.h"
 #include "vision/cap_fit.h"
+#include "vision/hand_pose.h"
 #include "vision/marker_colour.h"
 #include "vision/marker_segmentation.h"
 #include "vision/particle_filter.h"
+#include "vision/skin_mask.h"
 
 namespace springgrasp {
 
 struct TrackerOptions {
-  CapShape cap;                                 // radius 0: found in the first frame
+  CapShape cap;  // radius 0: found in the first frame
   MarkerColourOptions colour;
-  Handedness hand = Handedness::kRight;         // that shows its palm
+  Handedness hand = Handedness::kRight;  // that shows its palm
   ParticleOptions particles;
-  bool fit_outlines = true;                     // false: triangulated centroids, as in the paper
-  double max_epipolar_px = 3;                   // beyond: the two regions are not the same cap
-  double min_mass = 0.25;                       // cap pixels over those expected; below: lost
-  double min_similarity = 0.6;                  // Bhattacharyya with the model; below: lost
-  double search_radius = 0.04;                  // m, about where a finger was lost; grows with time
+  bool fit_outlines = true;     // false: triangulated centroids, as in the paper
+  double max_epipolar_px = 3;   // beyond: the two regions are not the same cap
+  double min_mass = 0.25;       // cap pixels over those expected; below: lost
+  double min_similarity = 0.6;  // Bhattacharyya with the model; below: lost
+  double search_radius = 0.04;  // m, about where a finger was lost; grows with time
 };
 
 struct TrackedFinger {
   std::array<std::optional<Eigen::Vector2d>, 2> pixel;  // left, right: centre of the cap, px
-  std::optional<Eigen::Vector3d> p_W;  // centre of the whole cap, m; only if seen in both views
+  std::optional<Eigen::Vector3d> p_W;     // centre of the whole cap, m; only if seen in both views
   std::optional<Eigen::Vector3d> axis_W;  // along the finger towards the tip, unit; a rough guess
-  double confidence = 0;               // 0..1: pixels found, colour, agreement of the views
-  double residual_px = 0;              // reprojection of the two regions (epipolar consistency)
+  double confidence = 0;                  // 0..1: pixels found, colour, agreement of the views
+  double residual_px = 0;                 // reprojection of the two regions (epipolar consistency)
 };
 
 struct TrackedFrame {
   PerFinger<TrackedFinger> fingers;
-  int num_seen() const;                // fingers with p_W
+  int num_seen() const;  // fingers with p_W
 };
 
 // Owns the filters' state. Deterministic: all randomness comes from the engine.
@@ -52,20 +54,21 @@ class FingertipTracker {
   FingertipTracker(FingertipTracker&&) noexcept;
 
   // Segments and labels the caps of the first frame. Nothing (and the tracker not started) if the
-  // caps cannot be told: call again with the next frame. `palm` per view helps the labelling; it
-  // is estimated from skin colour if absent. Throws Error if a picture has not the camera's size.
+  // caps cannot be told: call again with the next frame. Throws Error if a picture has not the
+  // camera's size.
   std::optional<TrackedFrame> Start(const cv::Mat& left, const cv::Mat& right);
 
-  // The next frame. Requires Start. `hint_W`: expected fingertips (e.g. from a hand fit), used only
-  // to search for lost fingers.
+  // The next frame. Requires Start.
   TrackedFrame Update(const cv::Mat& left, const cv::Mat& right, RandomEngine& engine);
 
   bool started() const;
-  // The palm's centre in W, about which finger order is checked, until told anew.
-  void SetPalm(const Eigen::Vector3d& p_WPalm);
-  const CapShape& cap() const;                     // as given or found
+  // What a fit of the whole hand says: palm (about which finger order is checked), directions of
+  // the fingers, and where lost ones should be. Used by the next update.
+  void SetHint(const HandModel& model, const HandFit& fit);
+  const CapShape& cap() const;  // as given or found
   const MarkerColour& colour() const;
-  const ParticleSet& particles(int view) const;    // after the last update, before resampling
+  const SkinModel& skin() const;                 // learned in the first frame
+  const ParticleSet& particles(int view) const;  // after the last update, before resampling
   // Part of the picture looked at in the last update.
   cv::Rect region_of_interest(int view) const;
 

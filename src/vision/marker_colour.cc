@@ -33,9 +33,7 @@ Hsv EntryHsv(int index) {
   return ToHsv(level(index >> 10), level(index >> 5), level(index));
 }
 
-double HueDistanceDeg(double a, double b) {
-  return std::abs(std::remainder(a - b, 360.0));
-}
+double HueDistanceDeg(double a, double b) { return std::abs(std::remainder(a - b, 360.0)); }
 
 int BinOf(const Hsv& hsv) {
   if (hsv.value < 0.08 || hsv.saturation < 0.1) return 0;

@@ -156,7 +156,8 @@ bool InFingerOrder(const PerFinger<Eigen::Vector2d>& caps, const PerFinger<bool>
     if (!seen[i]) continue;
     if (previous >= 0) {
       const double step =
-          turn * std::remainder(PolarAngle(caps[i], palm) - PolarAngle(caps[previous], palm), kTurn);
+          turn *
+          std::remainder(PolarAngle(caps[i], palm) - PolarAngle(caps[previous], palm), kTurn);
       if (step < -kSlack) return false;
     }
     previous = i;

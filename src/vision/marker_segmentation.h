@@ -28,7 +28,7 @@ std::vector<MarkerBlob> SegmentMarkers(const cv::Mat& likelihood, double min_are
 struct MarkerPair {
   int left = 0, right = 0;  // indices into the blobs
   TriangulatedPoint point;
-  double radius = 0;        // m, of the sphere of the same area at that depth (mean of the views)
+  double radius = 0;  // m, of the sphere of the same area at that depth (mean of the views)
 };
 
 // All pairings within `max_epipolar_px`, between 0.15 and 3 m, of a size ratio below 2.

@@ -15,7 +15,8 @@ void OutlinedText(cv::Mat& picture, const std::string& text, cv::Point at, const
 }
 
 cv::Point ToPoint(const Eigen::Vector2d& pixel, int shift) {
-  return {static_cast<int>(std::lround(pixel.x())) + shift, static_cast<int>(std::lround(pixel.y()))};
+  return {static_cast<int>(std::lround(pixel.x())) + shift,
+          static_cast<int>(std::lround(pixel.y()))};
 }
 
 }  // namespace
@@ -49,7 +50,8 @@ cv::Mat DrawOverlay(const cv::Mat& left, const cv::Mat& right, const StereoCamer
       const CameraModel& camera = cameras.view(v);
       double radius = 10;
       if (finger.p_W) {
-        const double depth = camera.X_WC.linear().col(2).dot(*finger.p_W - camera.X_WC.translation());
+        const double depth =
+            camera.X_WC.linear().col(2).dot(*finger.p_W - camera.X_WC.translation());
         radius = std::max(4.0, 1.25 * camera.fx * cap_radius / std::max(0.05, depth));
       }
       const cv::Point centre = ToPoint(*finger.pixel[v], 0);
@@ -68,10 +70,11 @@ cv::Mat DrawOverlay(const cv::Mat& left, const cv::Mat& right, const StereoCamer
     if (options.X_WH) {
       const auto origin = Project(cameras.view(v), options.X_WH->translation());
       for (int axis = 0; axis < 3 && origin; ++axis) {
-        const auto end = Project(cameras.view(v), options.X_WH->translation() +
-                                                      0.05 * options.X_WH->linear().col(axis));
+        const auto end = Project(
+            cameras.view(v), options.X_WH->translation() + 0.05 * options.X_WH->linear().col(axis));
         const cv::Scalar colours[3] = {{0, 0, 255}, {0, 200, 0}, {255, 0, 0}};
-        if (end) cv::line(half, ToPoint(*origin, 0), ToPoint(*end, 0), colours[axis], 2, cv::LINE_AA);
+        if (end)
+          cv::line(half, ToPoint(*origin, 0), ToPoint(*end, 0), colours[axis], 2, cv::LINE_AA);
       }
     }
   }

@@ -23,7 +23,8 @@ struct OverlayOptions {
 };
 
 // Left and right picture side by side with circles about the fingers; a finger seen in one view
-// only has a thin circle; missing ones are listed at the bottom. Returns CV_8UC3 of twice the width.
+// only has a thin circle; missing ones are listed at the bottom. Returns CV_8UC3 of twice the
+// width.
 cv::Mat DrawOverlay(const cv::Mat& left, const cv::Mat& right, const StereoCameras& cameras,
                     const TrackedFrame& frame, double cap_radius,
                     const OverlayOptions& options = {});

@@ -24,16 +24,16 @@ using Regions = PerFinger<Eigen::Vector2d>;  // centres, px
 
 struct ParticleSet {
   std::vector<Regions> regions;
-  std::vector<double> weights;  // sum to 1
-  std::vector<Regions> scratch; // resampling's second buffer
+  std::vector<double> weights;   // sum to 1
+  std::vector<Regions> scratch;  // resampling's second buffer
 };
 
 struct ParticleOptions {
   int count = 120;
-  double common_sigma_px = 4;      // of the whole hand, per frame
-  double finger_sigma_px = 2;      // of one finger within it
+  double common_sigma_px = 4;  // of the whole hand, per frame
+  double finger_sigma_px = 2;  // of one finger within it
   double colour_scale = 0.04;
-  double posture_sigma_px = 12;    // change of the offset between two fingers, per frame
+  double posture_sigma_px = 12;  // change of the offset between two fingers, per frame
 };
 
 // `count` copies of one configuration, equal weights.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <opencv2/imgproc.hpp>
 
 namespace springgrasp {
@@ -59,6 +60,28 @@ SkinModel LearnSkin(const cv::Mat& bgr, const MarkerColour& caps,
     skin.likelihood[i] = static_cast<std::uint8_t>(255 * p_near / (p_near + p_far + 2e-4F));
   }
   return skin;
+}
+
+Eigen::Vector2d SkinDirection(const cv::Mat& bgr, const SkinModel& skin,
+                              const Eigen::Vector2d& cap_px, double cap_radius_px) {
+  constexpr int kDirections = 24;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double total = 0;
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = 2 * std::numbers::pi * k / kDirections;
+    const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+    for (const double radii : {1.3, 1.6, 1.95, 2.3}) {
+      const Eigen::Vector2d at = cap_px + radii * cap_radius_px * direction;
+      const int u = static_cast<int>(std::lround(at.x())),
+                v = static_cast<int>(std::lround(at.y()));
+      if (u < 0 || v < 0 || u >= bgr.cols || v >= bgr.rows) continue;
+      const std::uint8_t* pixel = bgr.ptr(v) + 3 * u;
+      const double weight = skin.Of(pixel[0], pixel[1], pixel[2]) / 255.0;
+      sum += weight * direction;
+      total += weight;
+    }
+  }
+  return total > 4 ? Eigen::Vector2d(sum / total) : Eigen::Vector2d::Zero();
 }
 
 Eigen::Vector2d HandMask::ToMask(const Eigen::Vector2d& pixel) const {

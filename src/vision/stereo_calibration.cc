@@ -35,12 +35,13 @@ cv::Mat ReadMatrix(const cv::FileStorage& storage, const std::string& path, cons
   matrix.convertTo(matrix, CV_64F);
   matrix = matrix.clone();
   if (rows > 0) {
-    ThrowUnless(matrix.rows * matrix.cols == rows * cols, "{}: matrix '{}' is {}x{}, expected {}x{}",
-                path, name, matrix.rows, matrix.cols, rows, cols);
+    ThrowUnless(matrix.rows * matrix.cols == rows * cols,
+                "{}: matrix '{}' is {}x{}, expected {}x{}", path, name, matrix.rows, matrix.cols,
+                rows, cols);
   }
   for (std::size_t i = 0; i < matrix.total(); ++i) {
-    ThrowUnless(std::isfinite(matrix.ptr<double>()[i]), "{}: matrix '{}' has a value that is not a number",
-                path, name);
+    ThrowUnless(std::isfinite(matrix.ptr<double>()[i]),
+                "{}: matrix '{}' has a value that is not a number", path, name);
   }
   return matrix;
 }
@@ -50,14 +51,15 @@ CameraModel ReadCamera(const cv::FileStorage& storage, const std::string& path, 
   const cv::Mat K = ReadMatrix(storage, path, M, 3, 3);
   const cv::Mat k = ReadMatrix(storage, path, D, 0, 0);
   const double* m = K.ptr<double>();
-  ThrowUnless(m[0] > 1 && m[4] > 1 && m[8] == 1,
-              "{}: camera matrix '{}' has focal lengths {} and {}, expected positive ones in pixels",
-              path, M, m[0], m[4]);
+  ThrowUnless(
+      m[0] > 1 && m[4] > 1 && m[8] == 1,
+      "{}: camera matrix '{}' has focal lengths {} and {}, expected positive ones in pixels", path,
+      M, m[0], m[4]);
   // The axis of a camera for this size lies in the middle half of the picture.
-  ThrowUnless(m[2] > 0.25 * width && m[2] < 0.75 * width && m[5] > 0.25 * height &&
-                  m[5] < 0.75 * height,
-              "{}: camera matrix '{}' has its centre at ({}, {}), not that of {}x{} pictures", path, M,
-              m[2], m[5], width, height);
+  ThrowUnless(
+      m[2] > 0.25 * width && m[2] < 0.75 * width && m[5] > 0.25 * height && m[5] < 0.75 * height,
+      "{}: camera matrix '{}' has its centre at ({}, {}), not that of {}x{} pictures", path, M,
+      m[2], m[5], width, height);
   CameraModel camera;
   camera.width = width;
   camera.height = height;
@@ -67,9 +69,10 @@ CameraModel ReadCamera(const cv::FileStorage& storage, const std::string& path, 
   camera.cy = m[5];
   const double* d = k.ptr<double>();
   for (std::size_t i = 0; i < k.total(); ++i) {
-    ThrowUnless(i < camera.distortion.size() || d[i] == 0,
-                "{}: distortion '{}' has {} coefficients, expected at most 8 (k1 k2 p1 p2 k3 k4 k5 k6)",
-                path, D, k.total());
+    ThrowUnless(
+        i < camera.distortion.size() || d[i] == 0,
+        "{}: distortion '{}' has {} coefficients, expected at most 8 (k1 k2 p1 p2 k3 k4 k5 k6)",
+        path, D, k.total());
     if (i < camera.distortion.size()) camera.distortion[i] = d[i];
   }
   return camera;
@@ -89,8 +92,9 @@ StereoCameras ReadStereoCalibration(const std::string& intrinsics, const std::st
   Pose X_RL = Pose::Identity();
   X_RL.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(R.ptr<double>());
   X_RL.translation() = Eigen::Map<const Eigen::Vector3d>(T.ptr<double>());
-  const double skew =
-      (X_RL.linear() * X_RL.linear().transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  const double skew = (X_RL.linear() * X_RL.linear().transpose() - Eigen::Matrix3d::Identity())
+                          .cwiseAbs()
+                          .maxCoeff();
   ThrowUnless(skew < 1e-3 && X_RL.linear().determinant() > 0,
               "{}: matrix 'R' is not a rotation (R R' differs from 1 by {})", extrinsics, skew);
   const double baseline = X_RL.translation().norm();

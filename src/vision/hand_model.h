@@ -1,0 +1,34 @@
+// What a camera sees of a hand whose kinematics are known: balls along its bones and in its palm.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "base/fingers.h"
+#include "kinematics/kinematic_tree.h"
+
+namespace springgrasp {
+
+// A ball fixed to a body of the tree, all lengths for scale 1.
+struct HandBall {
+  int node = 0;
+  Eigen::Vector3d p_B = Eigen::Vector3d::Zero();  // m
+  double radius = 0.008;                          // m
+};
+
+struct HandModel {
+  KinematicTree tree;           // root: H
+  PerFinger<int> tip = {};      // frames mmm_<finger>_tip
+  std::vector<HandBall> balls;  // fingers, palm, and the beginning of the forearm
+  Eigen::VectorXd rest;         // rad: where joints are when nothing tells them
+  Eigen::VectorXd rest_sigma;   // rad: how surely
+  // Pairs (PIP, DIP): the end joint follows the middle one by two thirds.
+  std::vector<std::pair<int, int>> coupled;
+};
+
+// From a tree whose root is H and which has the frames `mmm_<finger>_tip`; `rest` (size
+// num_joints, rad) is the posture to fall back to, by default a third of each flexion's range.
+// Throws Error if a tip is missing.
+HandModel MakeHandModel(const KinematicTree& tree, const Eigen::VectorXd& rest = {});
+
+}  // namespace springgrasp

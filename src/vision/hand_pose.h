@@ -1,0 +1,80 @@
+// Pose of the hand frame H from pictures (system: "Hand motion"): the MMM hand fitted to the skin
+// region of both views and to the triangulated fingertips.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "base/fingers.h"
+#include "base/pose.h"
+#include "vision/camera_model.h"
+#include "vision/hand_model.h"
+#include "vision/skin_mask.h"
+
+namespace springgrasp {
+
+struct HandPoseOptions {
+  double tip_sigma = 0.003;   // m, of a fully trusted fingertip
+  double mask_sigma_px = 4;   // of a ball outside the mask, and of a mask point off the balls
+  double mask_reach_px = 12;  // beyond, a mask residual says no more: objects hide the hand
+  double pose_sigma = 0.02;   // m per frame, about the predicted position
+  double turn_sigma = 0.12;   // rad per frame
+  double joint_sigma = 0.15;  // rad per frame
+  int mask_samples = 40;      // per view
+  int iterations = 8;         // Levenberg-Marquardt, per frame
+  int start_iterations = 40;  // of each start in the first frame
+};
+
+// What one stereo frame says.
+struct HandObservation {
+  PerFinger<std::optional<Eigen::Vector3d>> tip_W;  // m
+  PerFinger<double> confidence = {};                // 0..1
+  std::array<const HandMask*, 2> masks = {nullptr, nullptr};
+};
+
+struct HandFit {
+  Pose X_WH = Pose::Identity();
+  Eigen::VectorXd q;  // finger joints, rad
+  double scale = 1;   // of all lengths of the model
+  double cost = 0;
+  double tip_rms = 0;  // m, over the tips used
+  int tips_used = 0;
+  bool has_orientation = false;  // at least three tips
+};
+
+// First frame: the fit from several starts (rigid alignment of the model's tips in some postures
+// to those seen), with the scale free. The back of the hand faces away from the cameras. Nothing
+// with fewer than four tips.
+std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras& cameras,
+                                    const HandObservation& observation,
+                                    const HandPoseOptions& options = {});
+
+// The next frame, from the last one; `velocity` is the motion of H expected since. With
+// `fit_scale` the scale stays free (lead-in), tied to the last one. With fewer than three tips
+// only the position follows, orientation and joints are kept.
+HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
+                      const HandObservation& observation, const HandFit& last,
+                      const Eigen::Vector3d& velocity, bool fit_scale,
+                      const HandPoseOptions& options = {});
+
+// Fingertip and last bone's direction (towards the tip) of a fit, in W: hints for the tracker.
+Eigen::Vector3d FittedTip(const HandModel& model, const HandFit& fit, int finger);
+Eigen::Vector3d FittedAxis(const HandModel& model, const HandFit& fit, int finger);
+
+// One instant of the hand's track.
+struct HandSample {
+  double t = 0;                            // s
+  std::optional<Eigen::Vector3d> p_WH;     // m
+  std::optional<Eigen::Quaterniond> R_WH;  // unit
+};
+
+// Smooths a track by local quadratic regression over +-`half_window` s (Savitzky-Golay on uneven
+// samples): positions, and rotation vectors about the window's middle. Missing samples stay
+// missing; near them and the ends the window is one-sided.
+std::vector<HandSample> SmoothHandTrack(const std::vector<HandSample>& track,
+                                        double half_window = 0.1);
+
+}  // namespace springgrasp

@@ -1,0 +1,172 @@
+#include "vision/track_demonstration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "vision/skin_mask.h"
+
+namespace springgrasp {
+namespace {
+
+// Follows H beside the fingertips.
+class HandFollower {
+ public:
+  HandFollower(const KinematicTree& tree, const StereoCameras& cameras,
+               const HandPoseOptions& options)
+      : model_(MakeHandModel(tree)), cameras_(cameras), options_(options) {}
+
+  // Nothing as long as the hand was not found.
+  const HandFit* Follow(const StereoFrame& frame, const TrackedFrame& tracked,
+                        const FingertipTracker& tracker, bool fit_scale) {
+    HandObservation observation;
+    for (int f = 0; f < kNumFingers; ++f) {
+      observation.tip_W[f] = tracked.fingers[f].p_W;
+      observation.confidence[f] = tracked.fingers[f].confidence;
+    }
+    for (int v = 0; v < 2; ++v) {
+      if (Segment(v, v == 0 ? frame.left : frame.right, tracked, tracker)) {
+        observation.masks[v] = &masks_[v];
+      }
+    }
+    if (!fit_) {
+      fit_ = StartHandFit(model_, cameras_, observation, options_);
+      return fit_ ? &*fit_ : nullptr;
+    }
+    const Eigen::Vector3d before = fit_->X_WH.translation();
+    fit_ = UpdateHandFit(model_, cameras_, observation, *fit_, velocity_, fit_scale, options_);
+    velocity_ = 0.5 * velocity_ + 0.5 * (fit_->X_WH.translation() - before);
+    return &*fit_;
+  }
+
+  const HandModel& model() const { return model_; }
+
+ private:
+  bool Segment(int v, const cv::Mat& bgr, const TrackedFrame& tracked,
+               const FingertipTracker& tracker) {
+    std::vector<Eigen::Vector2d> caps;
+    double radius = 0;
+    const CameraModel& camera = cameras_.view(v);
+    for (const TrackedFinger& finger : tracked.fingers) {
+      if (!finger.pixel[v] || !finger.p_W) continue;
+      caps.push_back(*finger.pixel[v]);
+      const double depth = camera.X_WC.linear().col(2).dot(*finger.p_W - camera.X_WC.translation());
+      radius += camera.fx * tracker.cap().radius / std::max(0.05, depth);
+    }
+    if (caps.empty()) return false;
+    radius /= static_cast<double>(caps.size());
+    // As far as a hand reaches from its tips.
+    double u0 = 1e9, v0 = 1e9, u1 = -1e9, v1 = -1e9;
+    for (const auto& cap : caps) {
+      u0 = std::min(u0, cap.x()), u1 = std::max(u1, cap.x());
+      v0 = std::min(v0, cap.y()), v1 = std::max(v1, cap.y());
+    }
+    const double reach = 17 * radius;
+    const cv::Rect region =
+        cv::Rect(cv::Point(static_cast<int>(u0 - reach), static_cast<int>(v0 - reach)),
+                 cv::Point(static_cast<int>(u1 + reach), static_cast<int>(v1 + reach))) &
+        cv::Rect(0, 0, bgr.cols, bgr.rows);
+    if (region.area() < 100) return false;
+    const int step = std::max(2, static_cast<int>(std::lround(radius / 3)));
+    SegmentHand(bgr, tracker.skin(), tracker.colour(), caps, radius, region, step, masks_[v]);
+    return true;
+  }
+
+  HandModel model_;
+  StereoCameras cameras_;
+  HandPoseOptions options_;
+  std::array<HandMask, 2> masks_;
+  std::optional<HandFit> fit_;
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace
+
+Demonstration TrackStereo(const FrameSource& source, const StereoCameras& cameras,
+                          const KinematicTree* hand, const TrackDemonstrationOptions& options,
+                          RandomEngine& engine, const InstantCallback& on_frame,
+                          TrackingSummary* summary) {
+  FingertipTracker tracker(cameras, options.tracker);
+  std::optional<HandFollower> follower;
+  if (hand != nullptr) follower.emplace(*hand, cameras, options.hand_pose);
+
+  Demonstration demonstration;
+  demonstration.frame = options.frame;
+  std::vector<HandSample> hand_track;
+  std::vector<double> residuals;
+  PerFinger<int> located = {};
+  std::optional<double> t_first;
+  int frames = 0, kept = 0;
+  double scale = 0;
+  while (const std::optional<StereoFrame> frame = source()) {
+    if (!t_first) t_first = frame->t;
+    const double t = frame->t - *t_first;
+    TrackedFrame tracked;
+    if (tracker.started()) {
+      tracked = tracker.Update(frame->left, frame->right, engine);
+    } else if (auto start = tracker.Start(frame->left, frame->right)) {
+      tracked = *start;
+    } else {
+      ThrowUnless(t < options.max_wait,
+                  "no five fingertip markers of one hand found in both views in the first {} s",
+                  options.max_wait);
+      continue;
+    }
+    ++frames;
+    const HandFit* fit = nullptr;
+    if (follower) {
+      fit = follower->Follow(*frame, tracked, tracker, t < options.scale_time);
+      if (fit != nullptr) {
+        scale = fit->scale;
+        tracker.SetHint(follower->model(), *fit);
+      }
+    }
+    if (on_frame) on_frame({*frame, tracked, fit, tracker});
+    // Half a microsecond of slack: times are sums of frame intervals.
+    if (t < options.lead_in - 5e-7) continue;
+    ++kept;
+    DemonstrationSample sample;
+    sample.t = t - options.lead_in;
+    for (int f = 0; f < kNumFingers; ++f) {
+      sample.p_WF[f] = tracked.fingers[f].p_W;
+      sample.confidence[f] = tracked.fingers[f].p_W ? tracked.fingers[f].confidence : 0;
+      if (!tracked.fingers[f].p_W) continue;
+      ++located[f];
+      residuals.push_back(tracked.fingers[f].residual_px);
+    }
+    demonstration.samples.push_back(sample);
+    HandSample hand_sample;
+    hand_sample.t = sample.t;
+    if (fit != nullptr && fit->tips_used > 0) {
+      hand_sample.p_WH = fit->X_WH.translation();
+      if (fit->has_orientation) hand_sample.R_WH = Eigen::Quaterniond(fit->X_WH.linear());
+    }
+    hand_track.push_back(hand_sample);
+  }
+  ThrowUnless(t_first.has_value(), "no frame to track: the video is empty");
+  ThrowUnless(frames > 0, "no five fingertip markers of one hand found in both views in {} frames",
+              "any of the");
+
+  if (options.smoothing > 0) hand_track = SmoothHandTrack(hand_track, options.smoothing);
+  for (std::size_t i = 0; i < demonstration.samples.size(); ++i) {
+    demonstration.samples[i].p_WH = hand_track[i].p_WH;
+    demonstration.samples[i].R_WH = hand_track[i].R_WH;
+  }
+  if (summary != nullptr) {
+    summary->frames = frames;
+    for (int f = 0; f < kNumFingers; ++f) {
+      summary->coverage[f] = kept > 0 ? static_cast<double>(located[f]) / kept : 0;
+    }
+    if (!residuals.empty()) {
+      std::nth_element(residuals.begin(), residuals.begin() + residuals.size() / 2,
+                       residuals.end());
+      summary->epipolar_px = residuals[residuals.size() / 2];
+    }
+    summary->hand_scale = scale;
+    summary->cap = tracker.cap();
+  }
+  return demonstration;
+}
+
+}  // namespace springgrasp
