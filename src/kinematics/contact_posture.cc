@@ -30,7 +30,7 @@ constexpr double kMinProximalLever = 0.035, kMinDistalLever = 0.018;  // m
 constexpr double kPad = 0.2;  // contact away from the pad's palmar side
 constexpr int kStarts = 5;
 // What presses in a power grasp, m.
-constexpr double kTouching = 0.001, kPalmTouching = 0.005;
+constexpr double kTouching = 0.0025, kPalmTouching = 0.005;
 
 // Everything that is known about one try: object in the hand and joints.
 class FingertipRows {

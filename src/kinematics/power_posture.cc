@@ -15,14 +15,15 @@ constexpr double kTouch = 0.0002;    // m
 constexpr double kCoarse = 0.06;     // rad, step of closing
 constexpr int kBends = 14;           // tried angles of the distal joint
 constexpr double kPassing = 0.02;    // m, a phalanx farther than this takes no part
-constexpr double kNear = 0.001;      // m, touches
+constexpr double kNear = 0.0025;     // m, touches once the hand presses
 constexpr double kPalmNear = 0.005;  // m, the palm carries once the fingers pull
 constexpr double kHandWidth = 0.09;  // m, an object longer than this lies under all fingers
 constexpr int kSamples = 6;          // along a phalanx
 
-double PalmDistance(const RobotHand& hand, const std::vector<Pose>& X_HB, const Pose& X_OH,
+// Of the palm and the open fingers, which an object seats against; the thumb stands aside.
+double SeatDistance(const RobotHand& hand, const std::vector<Pose>& X_HB, const Pose& X_OH,
                     const Shape& shape) {
-  return HandDistance(hand, X_HB, X_OH, shape, {}, true);
+  return HandDistance(hand, X_HB, X_OH, shape, {false, true, true, true, true}, true);
 }
 
 // Object orientations in A that suit parallel fingers: the demonstrated one, with the axis nearest
@@ -178,7 +179,7 @@ Candidate TrySeat(const RobotHand& hand, const ContactRequest& request,
   const Eigen::Vector3d wanted = -others.normalized();
   const FingerTouch thumb = CloseFinger(hand, kThumb, X_OH, shape, candidate.q, &wanted);
   account(kThumb, thumb);
-  candidate.cost += 3 * (1 - wanted.dot(PressNormal(thumb, kNear).normalized()));
+  candidate.cost += 6 * (1 - wanted.dot(PressNormal(thumb, kNear).normalized()));
   candidate.cost += LargestGap(angles);
   return candidate;
 }
@@ -226,13 +227,13 @@ ContactPosture SolvePowerPosture(const RobotHand& hand, const ContactRequest& re
         for (int i = 0; i < 20; ++i) {
           p_AO.z() = 0.5 * (far + near);
           X_HO.translation() = R_HA * p_AO;
-          (PalmDistance(hand, X_HB, X_HO.inverse(), shape) > options.palm_gap ? far : near) =
+          (SeatDistance(hand, X_HB, X_HO.inverse(), shape) > options.palm_gap ? far : near) =
               p_AO.z();
         }
         p_AO.z() = far;
         X_HO.translation() = R_HA * p_AO;
         Candidate candidate = TrySeat(hand, request, options, X_HO, q_open);
-        candidate.cost += 0.3 * palm + 0.1 * std::abs(turn);
+        candidate.cost += 2 * palm + 0.1 * std::abs(turn);
         if (candidate.cost < best.cost) best = candidate;
       }
     }

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,13 @@ struct ReachRequest {
   Pose X_HG = Pose::Identity();         // robot's grasp frame at contact
   bool tilt_free = true;                // fingertip grasps: tilt about the contact line
   double table_height = 0;              // m, world
+  double table_edge = -1e9;             // m, W's y where the table begins; nearer, nothing is hit
   double dt = 0.005;                    // s
   double T = 1;                         // s, contact
   std::vector<Eigen::VectorXd> q_hand;  // hand joints at the path's samples, rad
+  // Where the arm stands before (arm.joints' values). If the path begins at that hand pose, so does
+  // the joint path; absent: the joint path begins in any posture.
+  std::optional<Eigen::VectorXd> q_start;
   // The hand's path for an object posed at X_WO * X_OF (F: the free motion of the grasp about the
   // object, identity: as demonstrated). Its last poses must be X_WO * X_OF * X_HO^-1.
   std::function<std::vector<Pose>(const Pose& X_OF)> path;
@@ -56,11 +61,15 @@ struct ReachPlan {
   int candidates = 0, goals = 0;  // tried, and reached at the goal
 };
 
-// Rotations F about O that leave the shape (and so the contacts) as they are: sphere: about the
-// vertical and about the contact line; cylinder: about its axis; box: half turns (quarter turns if
-// square) about z; times tilts about the contact line within max_tilt for fingertip grasps. The
-// demonstrated one (identity) is first, then by growing deviation.
-std::vector<Pose> FreeMotions(const ReachRequest& request, const ReachOptions& options = {});
+// Motions F of the hand about O that leave the contacts as good as they are: sphere: turns about
+// the vertical and rolls about G's z; cylinder: turns about its axis; box: half turns about z
+// (quarter turns if square); each with tilts about the contact line within max_tilt where
+// `tilt_free`. The demonstrated one (identity) is first.
+struct FreeMotion {
+  Pose X_OF = Pose::Identity();
+  double yaw = 0, tilt = 0, roll = 0;  // rad
+};
+std::vector<FreeMotion> FreeMotions(const ReachRequest& request, const ReachOptions& options = {});
 
 // Evaluates all candidates at the goal (reached, lifted pose reached, limits, clearance), then
 // plans whole paths for the best until one succeeds. Deterministic.
@@ -68,8 +77,14 @@ ReachPlan PlanReach(const Arm& arm, const RobotHand& hand, const ReachRequest& r
                     const ReachOptions& options = {});
 
 // Hand poses raised in the middle so that the hand (capsules at q_hand) stays `clearance` above
-// the table: z is lifted by raise * bump(t), 0 at both ends. Returns the raise, m.
+// the table, beyond its edge: z is lifted by raise * bump(t), 0 at the start and from sample `last`
+// on. Returns the raise, m.
 double RaisePath(const RobotHand& hand, const std::vector<Eigen::VectorXd>& q_hand,
-                 double table_height, double clearance, std::vector<Pose>& X_WH);
+                 double table_height, double table_edge, double clearance, int last,
+                 std::vector<Pose>& X_WH);
+
+// Height of the lowest point of the hand above the table (only what is beyond its edge), m.
+double HandAboveTable(const RobotHand& hand, const Pose& X_WH, const Eigen::VectorXd& q_hand,
+                      double table_height, double table_edge);
 
 }  // namespace springgrasp

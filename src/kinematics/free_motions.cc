@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "kinematics/reach_plan.h"
+
+namespace springgrasp {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kSquare = 0.002;             // m, sides as equal as this are equal
+constexpr double kRoll = 20 * kPi / 180;      // rad, about G's z (spheres)
+constexpr double kTiltStep = 10 * kPi / 180;  // rad
+
+double SmoothStep(double s) {
+  s = std::clamp(s, 0.0, 1.0);
+  return s * s * s * (10 + s * (6 * s - 15));
+}
+
+// Turns 0, +step, -step, +2 step, ... up to `most` (inclusive).
+std::vector<double> Around(double step, double most) {
+  std::vector<double> values = {0};
+  for (int i = 1; i * step <= most + 1e-9; ++i) {
+    values.push_back(i * step);
+    values.push_back(-i * step);
+  }
+  return values;
+}
+
+Pose TurnAbout(const Eigen::Vector3d& p, const Eigen::Vector3d& axis, double angle) {
+  Pose X = Pose::Identity();
+  X.linear() = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+  X.translation() = p - X.linear() * p;
+  return X;
+}
+
+}  // namespace
+
+std::vector<FreeMotion> FreeMotions(const ReachRequest& request, const ReachOptions& options) {
+  const Pose X_OG = request.X_HO.inverse() * request.X_HG;
+  const bool sphere = request.shape.kind == Shape::Kind::kSphere;
+  const Eigen::Vector3d up_O =
+      sphere ? Eigen::Vector3d(request.X_WO.linear().row(2)) : Eigen::Vector3d::UnitZ();
+  std::vector<double> yaws, rolls = {0}, tilts = {0};
+  if (request.shape.kind == Shape::Kind::kBox) {
+    const bool square = std::abs(request.shape.size.x() - request.shape.size.y()) < kSquare;
+    yaws = square ? std::vector<double>{0, kPi / 2, -kPi / 2, kPi} : std::vector<double>{0, kPi};
+  } else {
+    yaws = Around(options.yaw_step, kPi - 0.5 * options.yaw_step);
+    yaws.push_back(kPi);
+  }
+  if (sphere) rolls = Around(kRoll, kRoll);
+  if (request.tilt_free || sphere) tilts = Around(kTiltStep, options.max_tilt);
+  std::vector<FreeMotion> motions;
+  for (const double tilt : tilts) {
+    for (const double roll : rolls) {
+      for (const double yaw : yaws) {
+        // A sphere turns about its own centre, so that its contacts stay on it.
+        const Eigen::Vector3d p = (sphere ? 0.0 : 1.0) * X_OG.translation();
+        const Pose X_tilt = TurnAbout(p, X_OG.linear().col(0), tilt);
+        const Pose X_roll = TurnAbout(p, X_OG.linear().col(2), roll);
+        const Pose X_yaw = TurnAbout(Eigen::Vector3d::Zero(), up_O.normalized(), yaw);
+        motions.push_back({X_yaw * X_tilt * X_roll, yaw, tilt, roll});
+      }
+    }
+  }
+  return motions;
+}
+
+double HandAboveTable(const RobotHand& hand, const Pose& X_WH, const Eigen::VectorXd& q_hand,
+                      double table_height, double table_edge) {
+  std::vector<Pose> X_HB;
+  ForwardKinematics(hand.tree, q_hand, X_HB);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const LinkCapsule& c : hand.capsules) {
+    for (const Eigen::Vector3d& p_B : {c.a, c.b}) {
+      const Eigen::Vector3d p_W = X_WH * (X_HB[c.node] * p_B);
+      if (p_W.y() + c.radius < table_edge) continue;
+      lowest = std::min(lowest, p_W.z() - c.radius - table_height);
+    }
+  }
+  return lowest;
+}
+
+double RaisePath(const RobotHand& hand, const std::vector<Eigen::VectorXd>& q_hand,
+                 double table_height, double table_edge, double clearance, int last,
+                 std::vector<Pose>& X_WH) {
+  constexpr double kWeak = 0.15;  // where the bump is lower it cannot help
+  constexpr double kMost = 0.25;  // m
+  const int n = static_cast<int>(X_WH.size());
+  last = std::clamp(last, 1, std::max(1, n - 1));
+  const auto bump = [&](int k) {
+    const double s = static_cast<double>(k) / last;
+    return s >= 1 ? 0 : SmoothStep(s / 0.4) * SmoothStep((1 - s) / 0.5);
+  };
+  double raise = 0;
+  for (int k = 0; k < std::min(n, last); ++k) {
+    const double b = bump(k);
+    if (b < kWeak) continue;
+    const Eigen::VectorXd& q = q_hand[std::min<std::size_t>(k, q_hand.size() - 1)];
+    const double height = HandAboveTable(hand, X_WH[k], q, table_height, table_edge);
+    raise = std::max(raise, std::min(kMost, (clearance - height) / b));
+  }
+  for (int k = 0; k < std::min(n, last); ++k) X_WH[k].translation().z() += raise * bump(k);
+  return raise;
+}
+
+}  // namespace springgrasp

@@ -1,0 +1,218 @@
+#include "kinematics/hand_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "kinematics/shape_distance.h"
+
+namespace springgrasp {
+namespace {
+
+constexpr PerFinger<bool> kAllFingers = {true, true, true, true, true};
+constexpr int kOpenings = 10;        // tried degrees of opening
+constexpr double kSmoothing = 0.02;  // s, half width of the final moving average
+constexpr double kHold = 0.05;       // s, an opening is kept this long before and after
+
+double SmoothStep(double s) {
+  s = std::clamp(s, 0.0, 1.0);
+  return s * s * s * (10 + s * (6 * s - 15));
+}
+
+double Clearance(const RobotHand& robot, const Shape& shape, const Pose& X_OH,
+                 const Eigen::VectorXd& q, std::vector<Pose>& X_HB) {
+  ForwardKinematics(robot.tree, q, X_HB);
+  return HandDistance(robot, X_HB, X_OH, shape, kAllFingers, true);
+}
+
+// Moving average over +-half samples, twice, ends held.
+template <typename T>
+void Smooth(std::vector<T>& series, int half) {
+  const int n = static_cast<int>(series.size());
+  std::vector<T> copy;
+  for (int pass = 0; pass < 2; ++pass) {
+    copy = series;
+    for (int k = 0; k < n; ++k) {
+      T sum = copy[std::clamp(k - half, 0, n - 1)];
+      for (int i = -half + 1; i <= half; ++i) sum += copy[std::clamp(k + i, 0, n - 1)];
+      series[k] = sum / (2 * half + 1);
+    }
+  }
+}
+
+// How far the hand must open (0..1 towards `q_open`) at each sample to stay clear.
+std::vector<double> Openings(const RobotHand& robot, const HandMotionRequest& request,
+                             const HandMotionOptions& options, const Eigen::VectorXd& q_open,
+                             const std::vector<Eigen::VectorXd>& q, double t_contact) {
+  const int n = static_cast<int>(q.size());
+  std::vector<double> needed(n, 0.0);
+  std::vector<Pose> X_HB;
+  for (int k = 0; k < n; ++k) {
+    const double left = (t_contact - request.dt * k) / (options.closing * request.T);
+    if (left <= 0) break;
+    const double wanted = options.clearance * std::min(1.0, left);
+    double best = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= kOpenings; ++i) {
+      const double opening = static_cast<double>(i) / kOpenings;
+      const double clearance =
+          Clearance(robot, request.shape, request.X_OH[k], q[k] + opening * (q_open - q[k]), X_HB);
+      if (clearance > best + 1e-6) {
+        best = clearance;
+        needed[k] = opening;
+      }
+      if (clearance >= wanted) break;
+    }
+  }
+  // Held around each need, then smoothed, so that the fingers do not flutter.
+  const int hold = std::max(1, static_cast<int>(kHold / request.dt));
+  std::vector<double> held(n, 0.0);
+  for (int k = 0; k < n; ++k) {
+    for (int i = std::max(0, k - hold); i <= std::min(n - 1, k + hold); ++i) {
+      held[k] = std::max(held[k], needed[i]);
+    }
+  }
+  Smooth(held, hold / 2 + 1);
+  for (int k = 0; k < n; ++k) {
+    held[k] *= SmoothStep((t_contact - request.dt * k) / (0.5 * options.closing * request.T));
+  }
+  return held;
+}
+
+}  // namespace
+
+Eigen::VectorXd OpenedPosture(const RobotHand& robot, const ContactPosture& posture,
+                              const Shape& shape, const PerFinger<bool>& involved,
+                              double clearance) {
+  const Pose X_OH = posture.X_HO.inverse();
+  std::vector<Pose> X_HB;
+  Eigen::VectorXd q = posture.q;
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (!involved[f]) continue;
+    PerFinger<bool> only = {};
+    only[f] = true;
+    // The proximal joint opens first, then the distal one.
+    for (const int j : {robot.fingers[f].j0, robot.fingers[f].j1}) {
+      const double from = q[j], to = std::min(from, robot.open[j]);
+      for (int i = 1; i <= 2 * kOpenings; ++i) {
+        ForwardKinematics(robot.tree, q, X_HB);
+        if (HandDistance(robot, X_HB, X_OH, shape, only, false) >= clearance) break;
+        q[j] = from + (to - from) * i / (2 * kOpenings);
+      }
+    }
+  }
+  return q;
+}
+
+HandMotionResult MapHandMotion(const HumanHand& human, const RobotHand& robot,
+                               const HandMotionRequest& request, const ContactPosture& posture,
+                               const HandMotionOptions& options) {
+  const int n = static_cast<int>(request.q_human.size());
+  ThrowUnless(n > 0 && request.p_OF.size() == request.q_human.size() &&
+                  request.X_OH.size() == request.q_human.size(),
+              "a hand motion needs as many joint samples ({}) as fingertips ({}) and hand poses "
+              "({})",
+              request.q_human.size(), request.p_OF.size(), request.X_OH.size());
+  ThrowUnless(request.dt > 0 && request.T > 0, "a hand motion needs a positive step and duration");
+  // The average below reaches two half widths back: contact is planned that much before T.
+  const int half = std::max(1, static_cast<int>(kSmoothing / 2 / request.dt));
+  const double t_contact = request.T - 2 * half * request.dt;
+  const double t_close = std::min(request.t_switch, 0.7 * t_contact);
+
+  HandMotionResult result;
+  double error = 0, count = 0;
+  Eigen::VectorXd previous;
+  for (int k = 0; k < n; ++k) {
+    const double blend = SmoothStep((request.dt * k - t_close) / (t_contact - t_close));
+    MappingTarget target = TargetFromHuman(human, request.q_human[k], robot);
+    for (int f = 0; f < kNumFingers; ++f) {
+      if (!request.involved[f]) continue;
+      const Eigen::Vector3d p_HF = request.X_OH[k].inverse() * request.p_OF[k][f];
+      target.p_HF[f] += blend * (p_HF - target.p_HF[f]);
+      target.lambda[f] = std::pow(options.lambda_contact, blend);
+    }
+    const MappingResult mapped = MapHand(robot, target, previous, options.mapping);
+    previous = mapped.q;
+    for (int f = 0; f < kNumFingers; ++f) {
+      if (!request.involved[f]) continue;
+      error += mapped.tip_error[f];
+      count += 1;
+    }
+    result.q.push_back(mapped.q + blend * (posture.q - mapped.q));
+  }
+  result.mapping_error = count > 0 ? error / count : 0;
+
+  const Eigen::VectorXd q_open =
+      OpenedPosture(robot, posture, request.shape, request.involved, 1.5 * options.clearance);
+  const std::vector<double> opening =
+      Openings(robot, request, options, q_open, result.q, t_contact);
+  for (int k = 0; k < n; ++k) result.q[k] += opening[k] * (q_open - result.q[k]);
+  Smooth(result.q, half);
+  for (Eigen::VectorXd& q : result.q) q = q.cwiseMax(robot.tree.lower).cwiseMin(robot.tree.upper);
+
+  result.clearance = std::numeric_limits<double>::infinity();
+  std::vector<Pose> X_HB;
+  for (int k = 0; k < n; ++k) {
+    const double clearance = Clearance(robot, request.shape, request.X_OH[k], result.q[k], X_HB);
+    if (request.dt * k < t_contact - options.closing * request.T) {
+      result.clearance = std::min(result.clearance, clearance);
+    }
+    PerFinger<Eigen::Vector3d> tips;
+    for (int f = 0; f < kNumFingers; ++f) {
+      tips[f] = FramePose(robot.tree, X_HB, robot.fingers[f].tip).translation();
+    }
+    result.p_HF.push_back(tips);
+    if (k == 0) continue;
+    result.max_step =
+        std::max(result.max_step, (result.q[k] - result.q[k - 1]).cwiseAbs().maxCoeff());
+  }
+  return result;
+}
+
+std::vector<Pose> ClearApproach(const RobotHand& robot, const Shape& shape,
+                                const std::vector<Pose>& X_OH, const Eigen::VectorXd& q_open,
+                                double dt, double T, double clearance, double closing) {
+  constexpr double kStep = 0.01, kMost = 0.16;  // m, offsets
+  constexpr int kStride = 3;                    // samples between checks
+  const int n = static_cast<int>(X_OH.size());
+  if (n == 0) return {};
+  const int last = std::min(n - 1, static_cast<int>(std::lround(T / dt)));
+  const double peak = std::max(0.3, 1 - 1.5 * closing);
+  const auto bump = [&](int k) {
+    const double s = dt * k / T;
+    return s < peak ? SmoothStep(s / peak) : SmoothStep((1 - s) / (1 - peak));
+  };
+  std::vector<Pose> X_HB;
+  // What the open hand has at the goal is all that can be asked near it.
+  const double at_goal = Clearance(robot, shape, X_OH[last], q_open, X_HB);
+  const double wanted = std::min(clearance, at_goal);
+  const auto shortage = [&](const Eigen::Vector3d& offset_O) {
+    double sum = 0;
+    for (int k = 0; k < last; k += kStride) {
+      Pose X = X_OH[k];
+      X.translation() += bump(k) * offset_O;
+      sum += std::max(0.0, wanted - HandDistance(robot, X_HB, X, shape, kAllFingers, true) - 1e-4);
+    }
+    return sum;
+  };
+  const Eigen::Matrix3d R_OA = X_OH[last].linear() * robot.R_HA;
+  Eigen::Vector3d best = Eigen::Vector3d::Zero();
+  double least = shortage(best);
+  for (double a = kStep; least > 0 && a <= kMost; a += kStep) {
+    for (const Eigen::Vector3d& d_A :
+         {Eigen::Vector3d(-0.7, 0, 0.7), Eigen::Vector3d(-0.4, 0, 0.9),
+          Eigen::Vector3d(-0.9, 0, 0.4), Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(-1, 0, 0)}) {
+      const Eigen::Vector3d offset = a * (R_OA * d_A.normalized());
+      const double s = shortage(offset);
+      if (s < least - 1e-6) {
+        least = s;
+        best = offset;
+      }
+    }
+  }
+  std::vector<Pose> path = X_OH;
+  for (int k = 0; k < last; ++k) path[k].translation() += bump(k) * best;
+  return path;
+}
+
+}  // namespace springgrasp

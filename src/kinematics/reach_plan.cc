@@ -1,0 +1,248 @@
+#include "kinematics/reach_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/error.h"
+
+namespace springgrasp {
+namespace {
+
+constexpr double kForearmRadius = 0.047;   // m (models/armar3b)
+constexpr double kWristRadius = 0.03;      // m
+constexpr double kEnoughMargin = 0.25;     // of half a joint's range; more is no better
+constexpr double kLeastClearance = 0.002;  // m, a goal nearer to the table is not taken
+constexpr double kBigStep = 0.15;          // rad between samples: a jump
+
+double SmoothStep(double s) {
+  s = std::clamp(s, 0.0, 1.0);
+  return s * s * s * (10 + s * (6 * s - 15));
+}
+
+// Forearm and wrist above the table: from the joint four before the hand to the hand frame.
+double ForearmAboveTable(const Arm& arm, const Eigen::VectorXd& q, const ReachRequest& request) {
+  Eigen::VectorXd full = arm.q;
+  for (int i = 0; i < arm.num_joints(); ++i) full[arm.joints[i]] = q[i];
+  std::vector<Pose> X_WB;
+  ForwardKinematics(arm.tree, full, X_WB);
+  const Eigen::Vector3d p_hand = FramePose(arm.tree, X_WB, arm.frame).translation();
+  // The elbow: the farthest of the last joints' bodies that is not yet the wrist.
+  Eigen::Vector3d p_elbow = p_hand;
+  for (int b = arm.tree.frames[arm.frame].node; b >= 0; b = arm.tree.nodes[b].parent) {
+    p_elbow = X_WB[b].translation();
+    if ((p_elbow - p_hand).norm() > 0.1) break;
+  }
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= 6; ++i) {
+    const double s = i / 6.0;
+    const Eigen::Vector3d p = p_elbow + s * (p_hand - p_elbow);
+    const double radius = kForearmRadius + s * (kWristRadius - kForearmRadius);
+    if (p.y() + radius < request.table_edge) continue;
+    lowest = std::min(lowest, p.z() - radius - request.table_height);
+  }
+  return lowest;
+}
+
+struct Goal {
+  FreeMotion motion;
+  Pose X_WH = Pose::Identity();
+  Eigen::VectorXd q;
+  double score = 0;
+};
+
+Pose Moved(const Pose& X_WH, const Eigen::Vector3d& by_W) {
+  Pose moved = X_WH;
+  moved.translation() += by_W;
+  return moved;
+}
+
+// The goal of one free motion: reached, liftable, shakable, clear of the table.
+std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRequest& request,
+                            const ReachOptions& options, const FreeMotion& motion) {
+  Goal goal;
+  goal.motion = motion;
+  goal.X_WH = request.X_WO * motion.X_OF * request.X_HO.inverse();
+  const double above = HandAboveTable(hand, goal.X_WH, request.q_hand.back(), request.table_height,
+                                      request.table_edge);
+  if (above < kLeastClearance) return std::nullopt;
+  ArmIkOptions ik;
+  ik.starts = 4;
+  const std::optional<Eigen::VectorXd> q =
+      SolveArmIkFromAnywhere(arm, goal.X_WH, ik, request.q_start);
+  if (!q) return std::nullopt;
+  goal.q = *q;
+  const double forearm = ForearmAboveTable(arm, *q, request);
+  if (forearm < kLeastClearance) return std::nullopt;
+  double margin = LimitMargin(arm, *q);
+  Eigen::VectorXd lifted_q = *q;
+  for (const double part : {0.33, 0.66, 1.0}) {
+    const auto next =
+        SolveArmIk(arm, Moved(goal.X_WH, Eigen::Vector3d(0, 0, part * options.lift)), lifted_q, ik);
+    if (!next) return std::nullopt;
+    lifted_q = *next;
+    margin = std::min(margin, LimitMargin(arm, lifted_q));
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      const Eigen::Vector3d by =
+          Eigen::Vector3d(0, 0, options.lift) + side * options.shake * Eigen::Vector3d::Unit(axis);
+      if (!SolveArmIk(arm, Moved(goal.X_WH, by), lifted_q, ik)) return std::nullopt;
+    }
+  }
+  goal.score = std::min(margin, kEnoughMargin);
+  goal.score -= 0.03 * std::abs(motion.tilt) / 0.35 + 0.03 * std::abs(motion.roll) / 0.35 +
+                0.01 * std::abs(motion.yaw) / std::numbers::pi;
+  goal.score -= 10 * std::max(0.0, options.clearance - std::min(above, forearm));
+  return goal;
+}
+
+// Joint path of the poses that ends in q_goal: tracked backwards, then turned within the arm's
+// null space so that it begins at q_start if the hand does.
+ArmPath JointPath(const Arm& arm, const std::vector<Pose>& X_WH, const Eigen::VectorXd& q_goal,
+                  const std::optional<Eigen::VectorXd>& q_start) {
+  const std::vector<Pose> reversed(X_WH.rbegin(), X_WH.rend());
+  ArmPath path = TrackArmPath(arm, reversed, q_goal, kBigStep);
+  std::reverse(path.q.begin(), path.q.end());
+  if (!path.complete || !q_start) return path;
+  const Pose X_start = HandPose(arm, *q_start);
+  const bool begins_there = (X_start.translation() - X_WH.front().translation()).norm() < 1e-3 &&
+                            X_start.linear().isApprox(X_WH.front().linear(), 5e-3);
+  if (!begins_there) return path;
+  const Eigen::VectorXd difference = *q_start - path.q.front();
+  ArmIkOptions ik;
+  ik.limit_weight = 0;
+  const std::size_t n = path.q.size();
+  ArmPath joined;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double rest = 1 - SmoothStep(static_cast<double>(k) / (0.8 * static_cast<double>(n)));
+    std::optional<Eigen::VectorXd> q = path.q[k];
+    if (rest > 0) q = SolveArmIk(arm, X_WH[k], path.q[k] + rest * difference, ik);
+    if (!q) {
+      joined.reason = fmt::format("the arm cannot come from its start posture (sample {})", k);
+      return joined;
+    }
+    if (k > 0) {
+      joined.max_step = std::max(joined.max_step, (*q - joined.q.back()).cwiseAbs().maxCoeff());
+      if (joined.max_step > kBigStep) {
+        joined.reason = fmt::format("the arm would jump coming from its start (sample {})", k);
+        return joined;
+      }
+    }
+    joined.q.push_back(*q);
+  }
+  joined.complete = true;
+  return joined;
+}
+
+// The whole path to one goal; false with a reason in `plan`.
+bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request,
+              const ReachOptions& options, const Goal& goal, ReachPlan& plan) {
+  plan.X_OF = goal.motion.X_OF;
+  plan.X_WH = request.path(goal.motion.X_OF);
+  ThrowUnless(!plan.X_WH.empty(), "a reach needs a path of hand poses, found none");
+  plan.via_raise =
+      RaisePath(hand, request.q_hand, request.table_height, request.table_edge, options.clearance,
+                static_cast<int>(std::lround(request.T / request.dt)), plan.X_WH);
+  const std::optional<Eigen::VectorXd> q_end = SolveArmIk(arm, plan.X_WH.back(), goal.q);
+  if (!q_end) {
+    plan.reason = "the end of the reach is out of the arm's reach";
+    return false;
+  }
+  ArmPath path = JointPath(arm, plan.X_WH, *q_end, request.q_start);
+  if (!path.complete) {
+    plan.reason = path.reason;
+    return false;
+  }
+  if (path.max_step > options.max_joint_speed * request.dt) {
+    plan.reason = fmt::format("the reach asks for {:.1f} rad/s of a joint, allowed are {:.1f}",
+                              path.max_step / request.dt, options.max_joint_speed);
+    return false;
+  }
+  std::vector<Pose> X_lift;
+  const int lift_steps = static_cast<int>(std::lround(options.lift_duration / request.dt));
+  for (int k = 0; k <= lift_steps; ++k) {
+    const double z = options.lift * SmoothStep(static_cast<double>(k) / lift_steps);
+    X_lift.push_back(Moved(plan.X_WH.back(), Eigen::Vector3d(0, 0, z)));
+  }
+  const ArmPath lift = TrackArmPath(arm, X_lift, path.q.back(), kBigStep);
+  if (!lift.complete) {
+    plan.reason = "lifting: " + lift.reason;
+    return false;
+  }
+  const int shake_steps = static_cast<int>(std::lround(options.shake_duration / request.dt));
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<Pose> X_shake;
+    for (int k = 0; k <= shake_steps; ++k) {
+      const double t = request.dt * k;
+      // Fades in and out within a quarter period, so that it starts and ends at rest.
+      const double fade = 4 * options.shake_frequency;
+      const double envelope =
+          SmoothStep(fade * t) * SmoothStep(fade * (options.shake_duration - t));
+      const double s =
+          options.shake * envelope * std::sin(2 * std::numbers::pi * options.shake_frequency * t);
+      X_shake.push_back(Moved(X_lift.back(), s * Eigen::Vector3d::Unit(axis)));
+    }
+    const ArmPath shake = TrackArmPath(arm, X_shake, lift.q.back(), kBigStep);
+    if (!shake.complete) {
+      plan.reason = "shaking: " + shake.reason;
+      return false;
+    }
+    plan.shake[axis] = shake.q;
+  }
+  plan.arm = path.q;
+  plan.lift = lift.q;
+  plan.limit_margin = 1;
+  plan.table_clearance = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < plan.arm.size(); ++k) {
+    plan.limit_margin = std::min(plan.limit_margin, LimitMargin(arm, plan.arm[k]));
+    const Eigen::VectorXd& q_hand = request.q_hand[std::min(k, request.q_hand.size() - 1)];
+    plan.table_clearance = std::min(
+        {plan.table_clearance, ForearmAboveTable(arm, plan.arm[k], request),
+         HandAboveTable(hand, plan.X_WH[k], q_hand, request.table_height, request.table_edge)});
+  }
+  for (const Eigen::VectorXd& q : plan.lift) {
+    plan.limit_margin = std::min(plan.limit_margin, LimitMargin(arm, q));
+  }
+  plan.reachable = true;
+  plan.reason.clear();
+  return true;
+}
+
+}  // namespace
+
+ReachPlan PlanReach(const Arm& arm, const RobotHand& hand, const ReachRequest& request,
+                    const ReachOptions& options) {
+  ThrowUnless(!request.q_hand.empty() && request.path,
+              "a reach needs the hand's joints and a path of hand poses");
+  ReachPlan plan;
+  std::vector<Goal> goals;
+  for (const FreeMotion& motion : FreeMotions(request, options)) {
+    ++plan.candidates;
+    std::optional<Goal> goal = TryGoal(arm, hand, request, options, motion);
+    if (goal) goals.push_back(std::move(*goal));
+  }
+  plan.goals = static_cast<int>(goals.size());
+  if (goals.empty()) {
+    plan.reason = fmt::format(
+        "no arm posture grasps, lifts and shakes the object at ({:.3f}, {:.3f}, {:.3f}): 0 of {} "
+        "hand poses",
+        request.X_WO.translation().x(), request.X_WO.translation().y(),
+        request.X_WO.translation().z(), plan.candidates);
+    return plan;
+  }
+  std::stable_sort(goals.begin(), goals.end(),
+                   [](const Goal& a, const Goal& b) { return a.score > b.score; });
+  const std::size_t tries = std::min<std::size_t>(goals.size(), options.path_candidates);
+  // Neighbouring goals fail alike: besides the best few, take them evenly from the rest.
+  for (std::size_t i = 0; i < tries; ++i) {
+    const std::size_t half = tries / 2;
+    const std::size_t index =
+        i < half ? i : half + (i - half) * (goals.size() - half) / (tries - half);
+    if (PlanPath(arm, hand, request, options, goals[index], plan)) return plan;
+  }
+  return plan;
+}
+
+}  // namespace springgrasp
