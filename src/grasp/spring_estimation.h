@@ -36,7 +36,7 @@ struct FittedGains {
 struct EstimationOptions {
   bool non_negative = true;    // NNLS after the SVD
   bool trajectory_fit = true;  // Levenberg-Marquardt after that
-  FittedGains fit;
+  FittedGains fit = {};
   bool fit_start = true;  // p(0), v(0) of every observation
   double rcond = 1e-10;   // relative threshold of singular values
   double trim = 0;        // s dropped at both ends for the regression
@@ -77,6 +77,7 @@ struct SpringEstimate {
   SpringRegression linear;         // the paper's SVD
   Eigen::VectorXd k_non_negative;  // NNLS
   double condition_number = 0;     // of the last method's scaled Jacobian
+  FittedGains fitted;              // which gains below are fitted
   bool converged = true;
   int iterations = 0;
   // Fitted gains, or those given. Factors for damping (on d_e), kc and dc.

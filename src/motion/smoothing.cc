@@ -76,8 +76,9 @@ std::vector<Index> UsableRows(const VectorXd& t, const MatrixXd& x) {
   std::vector<Index> rows;
   for (Index i = 0; i < t.size(); ++i) {
     if (!x.row(i).allFinite()) continue;
-    ThrowUnless(rows.empty() || t[i] > t[rows.back()],
-                "smoothing: times must increase; {} follows {}", t[i], t[rows.back()]);
+    if (!rows.empty() && t[i] <= t[rows.back()]) {
+      Fail("smoothing: times must increase; {} follows {}", t[i], t[rows.back()]);
+    }
     rows.push_back(i);
   }
   return rows;

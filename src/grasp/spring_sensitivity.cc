@@ -1,0 +1,192 @@
+#include "grasp/spring_sensitivity.h"
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace springgrasp {
+namespace {
+
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// df/dtheta of the gains that act through the force.
+double ForceDerivative(const CentralForce& force, SpringGain gain, double t) {
+  CentralForce lower = force, upper = force;
+  double step = 1e-5;
+  switch (gain) {
+    case SpringGain::kGamma:
+      lower.gamma *= std::exp(-step);
+      upper.gamma *= std::exp(step);
+      break;
+    case SpringGain::kBeta:
+      lower.beta *= std::exp(-step);
+      upper.beta *= std::exp(step);
+      break;
+    case SpringGain::kDelay:
+      step *= force.T;
+      lower.delay -= step;
+      upper.delay += step;
+      break;
+    case SpringGain::kSwitch:
+      step *= force.T;
+      lower.t_switch -= step;
+      upper.t_switch += step;
+      break;
+    default:
+      return 0;
+  }
+  return (EvaluateCentralForce(upper, t) - EvaluateCentralForce(lower, t)) / (2 * step);
+}
+
+// Carries d(p, v)/dtheta along with the stepper.
+class Sensitivities {
+ public:
+  Sensitivities(const SpringSystem& system, const CentralForce& force,
+                const SpringParameters& parameters)
+      : system_(system), parameters_(parameters), n_(system.num_coordinates()) {
+    const Index q = parameters.count(system);
+    P.setZero(n_, q);
+    V.setZero(n_, q);
+    if (parameters.start) {
+      P.middleCols(q - 2 * n_, n_).setIdentity();
+      V.rightCols(n_).setIdentity();
+    }
+    matrix_.setZero(2 * n_, 2 * n_);
+    right_.setZero(2 * n_, q);
+    lu_ = Eigen::PartialPivLU<MatrixXd>(MatrixXd::Identity(2 * n_, 2 * n_));
+    for (const SpringGain gain : parameters.gains) {
+      tables_.push_back(gain <= SpringGain::kSwitch ? Table(force, gain) : VectorXd());
+    }
+    dt_ = (last_ - first_) / static_cast<double>(kTable - 1);
+  }
+
+  void OnStep(const SpringStepper::Stages& stages) {
+    const double h = stages.h;
+    for (int i = 0; i < 2; ++i) {
+      EvaluateSprings(system_, stages.p[i], stages.v[i], stages.f[i], terms_);
+      SpringJacobian(system_, stages.p[i], stages.v[i], stages.f[i], terms_, Jp_, Jv_);
+      for (int j = 0; j < 2; ++j) {
+        const double aa = kGaussA[i][0] * kGaussA[0][j] + kGaussA[i][1] * kGaussA[1][j];
+        auto block = matrix_.block(i * n_, j * n_, n_, n_);
+        block = -h * h * aa * Jp_ - h * kGaussA[i][j] * Jv_;
+        if (i == j) block.diagonal().array() += 1;
+      }
+      auto rows = right_.middleRows(i * n_, n_);
+      stage_ = P + (h * kGaussC[i]) * V;
+      rows.noalias() = Jp_ * stage_;
+      rows.noalias() += Jv_ * V;
+      AddExplicit(stages, i, rows);
+    }
+    lu_.compute(matrix_);
+    const MatrixXd dA = lu_.solve(right_);
+    const double b0 = 0.5 * (kGaussA[0][0] + kGaussA[1][0]);
+    const double b1 = 0.5 * (kGaussA[0][1] + kGaussA[1][1]);
+    P += h * V + (h * h) * (b0 * dA.topRows(n_) + b1 * dA.bottomRows(n_));
+    V += (0.5 * h) * (dA.topRows(n_) + dA.bottomRows(n_));
+  }
+
+  MatrixXd P, V;  // n x parameters
+
+ private:
+  static constexpr Index kTable = 2001;
+
+  // The force's derivative is tabulated once: it is asked for at every stage.
+  VectorXd Table(const CentralForce& force, SpringGain gain) {
+    first_ = std::min(force.t[0], 0.0);
+    last_ = std::max(force.t[force.t.size() - 1], force.T) + force.delay + 0.1 * force.T;
+    VectorXd values(kTable);
+    for (Index i = 0; i < kTable; ++i) {
+      const double t = first_ + (last_ - first_) * static_cast<double>(i) / (kTable - 1);
+      values[i] = ForceDerivative(force, gain, t);
+    }
+    return values;
+  }
+
+  double At(const VectorXd& table, double t) const {
+    const double x = (t - first_) / dt_;
+    if (x <= 0 || x >= kTable - 1) return 0;
+    const auto i = static_cast<Index>(x);
+    const double fraction = x - static_cast<double>(i);
+    return (1 - fraction) * table[i] + fraction * table[i + 1];
+  }
+
+  // d acc / d theta at fixed state.
+  template <typename Rows>
+  void AddExplicit(const SpringStepper::Stages& stages, int stage, Rows& rows) const {
+    const int dim = system_.dim;
+    const auto E = static_cast<Index>(system_.springs.size());
+    for (Index e = 0; e < E; ++e) {
+      const Spring& spring = system_.springs[static_cast<std::size_t>(e)];
+      rows.col(e).segment(dim * spring.i, dim) -= terms_.x.col(e) / system_.mass[spring.i];
+      rows.col(e).segment(dim * spring.j, dim) += terms_.x.col(e) / system_.mass[spring.j];
+    }
+    for (std::size_t g = 0; g < parameters_.gains.size(); ++g) {
+      auto column = rows.col(E + static_cast<Index>(g));
+      const SpringGain gain = parameters_.gains[g];
+      if (gain == SpringGain::kDamping) {
+        for (Index e = 0; e < E; ++e) {
+          const Spring& spring = system_.springs[static_cast<std::size_t>(e)];
+          const auto xdot = spring.d * terms_.xdot.col(e);
+          column.segment(dim * spring.i, dim) -= xdot / system_.mass[spring.i];
+          column.segment(dim * spring.j, dim) += xdot / system_.mass[spring.j];
+        }
+        continue;
+      }
+      const double df =
+          gain <= SpringGain::kSwitch ? At(tables_[g], stages.t + kGaussC[stage] * stages.h) : 0;
+      for (int i = 0; i < system_.num_fingers(); ++i) {
+        if (!system_.involved[static_cast<std::size_t>(i)]) continue;
+        auto rows_i = column.segment(dim * i, dim);
+        if (gain == SpringGain::kContact) {
+          rows_i -= system_.kc * terms_.xc.col(i) / system_.mass[i];
+        } else if (gain == SpringGain::kContactDamping) {
+          rows_i -= system_.dc * stages.v[stage].col(i) / system_.mass[i];
+        } else {
+          rows_i -= ((i == 0 ? 1 : terms_.R) * df / system_.mass[i]) * terms_.direction.col(i);
+        }
+      }
+    }
+  }
+
+  const SpringSystem& system_;
+  const SpringParameters& parameters_;
+  Index n_;
+  std::vector<VectorXd> tables_;
+  double first_ = 0, last_ = 1, dt_ = 1;
+  SpringTerms terms_;
+  MatrixXd Jp_, Jv_, matrix_, right_, stage_;
+  Eigen::PartialPivLU<MatrixXd> lu_;
+};
+
+}  // namespace
+
+std::optional<SpringTrajectory> IntegrateWithSensitivities(
+    const SpringSystem& system, const CentralForce& force, const SpringParameters& parameters,
+    const MatrixXd& p0, const MatrixXd& v0, const VectorXd& times, const SpringIntegration& options,
+    MatrixXd& dp) {
+  const ForceProfile profile = MakeForceProfile(force);
+  SpringStepper stepper(system, options);
+  Sensitivities sensitivities(system, force, parameters);
+  stepper.on_step = [&](const SpringStepper::Stages& stages) { sensitivities.OnStep(stages); };
+  const Index n = system.num_coordinates(), m = times.size();
+  SpringTrajectory out;
+  out.t = times;
+  out.p.resize(m, n);
+  out.v.resize(m, n);
+  dp.resize(m * n, parameters.count(system));
+  MatrixXd p = p0, v = v0;
+  for (Index i = 0; i < m; ++i) {
+    if (i > 0 && !AdvanceSprings(stepper, profile, times[i - 1], times[i], options.step, p, v)) {
+      return {};
+    }
+    out.p.row(i) = Map<const VectorXd>(p.data(), n).transpose();
+    out.v.row(i) = Map<const VectorXd>(v.data(), n).transpose();
+    dp.middleRows(i * n, n) = sensitivities.P;
+  }
+  return out;
+}
+
+}  // namespace springgrasp
