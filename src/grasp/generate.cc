@@ -67,8 +67,8 @@ FingertipMotion GenerateMotion(const Grasp& grasp, const GenerateOptions& option
   // Contacts on the new surface; G keeps its place among them.
   const PerFinger<Contact> contacts = ContactsOn(grasp, options.shape, options.tip_radius);
   const PerFinger<Contact> learned = ContactsOn(grasp, grasp.shape, grasp.tip_radius);
-  const Vector3d shift = MiddleOfContacts(contacts, grasp.involved) -
-                         MiddleOfContacts(learned, grasp.involved);
+  const Vector3d shift =
+      MiddleOfContacts(contacts, grasp.involved) - MiddleOfContacts(learned, grasp.involved);
   Pose X_OG_goal = grasp.X_OH * grasp.X_HG;
   X_OG_goal.translation() += shift;
   Pose X_OG_start = StartPose(grasp.reach);
@@ -124,7 +124,10 @@ FingertipMotion GenerateMotion(const Grasp& grasp, const GenerateOptions& option
   run.T = T;
   run.t_switch = grasp.switch_rule == "fitted" ? grasp.t_switch * T : path.t_switch;
   motion.t_switch = run.t_switch + run.gains.delay;
-  const FingerMotion fingers = SimulateFingers(run, path.acceleration, options.dt);
+  const auto fingers = SimulateFingers(run, path.acceleration, options.dt);
+  ThrowUnless(fingers.has_value(),
+              "{}: the fingertip springs run away (kc {} N/m, dc {} N s/m, gamma {} kg, T {} s)",
+              grasp.name, run.gains.kc, run.gains.dc, run.gains.gamma, T);
 
   for (int n = 0; n < count; ++n) {
     const auto k = static_cast<std::size_t>(n);
@@ -132,8 +135,8 @@ FingertipMotion GenerateMotion(const Grasp& grasp, const GenerateOptions& option
     sample.t = n * options.dt;
     sample.X_WG = X_WO * path.X_OG[k];
     sample.X_WH = sample.X_WG * X_GH;
-    sample.f_cen = fingers.f_cen[k];
-    sample.p_HF = fingers.p_HF[k];
+    sample.f_cen = fingers->f_cen[k];
+    sample.p_HF = fingers->p_HF[k];
     motion.samples.push_back(sample);
   }
   return motion;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
 #include "grasp/spring_integrator.h"
 #include "motion/minimum_jerk.h"
 
@@ -106,8 +105,8 @@ double HoldingForce(const FingerRun& run) {
   return std::max(run.gains.holding, 1.5 * largest);
 }
 
-FingerMotion SimulateFingers(const FingerRun& run, const std::vector<double>& acceleration,
-                             double dt) {
+std::optional<FingerMotion> SimulateFingers(const FingerRun& run,
+                                            const std::vector<double>& acceleration, double dt) {
   const std::vector<int> fingers = {0, 1, 2, 3, 4};
   const SpringSystem system = MakeSystem(run, fingers);
   const CentralForce force = MakeRunForce(run, acceleration, dt);
@@ -128,9 +127,7 @@ FingerMotion SimulateFingers(const FingerRun& run, const std::vector<double>& ac
   const auto trajectory =
       IntegrateSprings(system, profile, SystemPoints(run, fingers, run.p_HF),
                        SystemPoints(run, fingers, run.v_HF, true), times, integration);
-  ThrowUnless(trajectory.has_value(),
-              "the fingertip springs run away: kc {} N/m, dc {} N s/m, gamma {} kg, T {} s",
-              run.gains.kc, run.gains.dc, run.gains.gamma, run.T);
+  if (!trajectory) return std::nullopt;
 
   FingerMotion motion;
   const Pose X_PH = run.X_HP.inverse();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,19 +19,19 @@ namespace springgrasp {
 using Fingertips = PerFinger<Eigen::Vector3d>;
 
 struct FingerRun {
-  int dim = 3;                            // 2: springs in the xy-plane of P, 3
-  Pose X_HP = Pose::Identity();           // hand plane (dim 2)
+  int dim = 3;                   // 2: springs in the xy-plane of P, 3
+  Pose X_HP = Pose::Identity();  // hand plane (dim 2)
   PerFinger<bool> involved = {};
-  Fingertips p_HC, n_H;                   // contacts (tip centres) and outward normals in H
-  Fingertips p_HF, v_HF;                  // state at t = 0, m and m/s
+  Fingertips p_HC, n_H;   // contacts (tip centres) and outward normals in H
+  Fingertips p_HF, v_HF;  // state at t = 0, m and m/s
   std::vector<std::pair<int, int>> edges;
-  std::vector<double> rest_lengths;       // per edge, m
+  std::vector<double> rest_lengths;  // per edge, m
   SpringGains gains;
-  double ambient_damping = 0;             // N s/m
-  std::string ratio = "reciprocal";       // paper | reciprocal
+  double ambient_damping = 0;        // N s/m
+  std::string ratio = "reciprocal";  // paper | reciprocal
   double max_ratio = 16;
-  double T = 1;                           // s
-  double t_switch = 0.5;                  // s
+  double T = 1;           // s
+  double t_switch = 0.5;  // s
 };
 
 // The springs as a system of the listed fingers, in the plane or in space.
@@ -53,8 +54,8 @@ struct FingerMotion {
 };
 
 // Fingertips in H at even steps of `dt`. After the switch the central force never falls below a
-// ramp that rises to the holding force at T. Throws Error if the springs run away.
-FingerMotion SimulateFingers(const FingerRun& run, const std::vector<double>& acceleration,
-                             double dt);
+// ramp that rises to the holding force at T. Nothing if the springs run away.
+std::optional<FingerMotion> SimulateFingers(const FingerRun& run,
+                                            const std::vector<double>& acceleration, double dt);
 
 }  // namespace springgrasp

@@ -57,8 +57,7 @@ std::string ReportGrasp(const Grasp& grasp) {
   fmt::format_to(to,
                  "gains: gamma A/(m x0) {:.1f}, omega T {:.2f}, zeta {:.2f}, delay {:.2f} T, "
                  "closing {:.2f}, holding {:.2f}\n",
-                 gains.reach, gains.omega_T, gains.zeta, gains.delay, gains.closing,
-                 gains.holding);
+                 gains.reach, gains.omega_T, gains.zeta, gains.delay, gains.closing, gains.holding);
   if (grasp.dim == 2) {
     fmt::format_to(to, "planarity residual: {:.1f} mm\n", 1e3 * grasp.quality.planarity);
   }

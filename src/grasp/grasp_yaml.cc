@@ -89,8 +89,8 @@ void FormatReach(std::string& out, const PoseDmp& reach) {
   const Eigen::Quaterniond& R = reach.R_ref;
   const double R_ref[4] = {R.w(), R.x(), R.y(), R.z()};
   fmt::format_to(to, "reach:  # DMP of the grasp frame G in O: x y z (m), rotation vector (rad)\n");
-  fmt::format_to(to, "  K: {:.17g}\n  D: {:.17g}\n  alpha: {:.17g}\n  tau: {:.17g}\n", dmp.K,
-                 dmp.D, dmp.alpha, dmp.tau);
+  fmt::format_to(to, "  K: {:.17g}\n  D: {:.17g}\n  alpha: {:.17g}\n  tau: {:.17g}\n", dmp.K, dmp.D,
+                 dmp.alpha, dmp.tau);
   fmt::format_to(to, "  reference: {}  # orientation R_OG that the rotation vector counts from\n",
                  List(R_ref, 4));
   fmt::format_to(to, "  start: {}\n  goal: {}\n", Column(dmp.x0, 0), Column(dmp.g, 0));
@@ -296,15 +296,16 @@ std::string FormatGrasp(const Grasp& grasp) {
                  grasp.tip_radius);
   fmt::format_to(to, "involved: {}  # the paper's c(i)\nobserved: {}\n", Names(grasp.involved),
                  Names(grasp.observed));
-  fmt::format_to(to, "object:\n  origin: {}\n  shape: {}\n", grasp.object_given ? "given" : "inferred",
-                 FormatShape(grasp.shape));
+  fmt::format_to(to, "object:\n  origin: {}\n  shape: {}\n",
+                 grasp.object_given ? "given" : "inferred", FormatShape(grasp.shape));
   fmt::format_to(to, "  hand: {}  # X_OH at contact\n", List(grasp.X_OH));
   fmt::format_to(to, "grasp_frame: {}  # X_HG at contact\n", List(grasp.X_HG));
   fmt::format_to(to, "movement:\n  duration: {:.17g}  # T, s\n  length: {:.17g}  # A, m\n",
                  grasp.scales.T, grasp.scales.A);
   fmt::format_to(to, "  distance: {:.17g}  # x0, mean distance from the contacts at t = 0, m\n",
                  grasp.scales.x0);
-  fmt::format_to(to, "  switch: {}  # of f_cen: learned (peak speed) | fitted\n", grasp.switch_rule);
+  fmt::format_to(to, "  switch: {}  # of f_cen: learned (peak speed) | fitted\n",
+                 grasp.switch_rule);
   fmt::format_to(to, "  t_switch: {:.17g}  # fraction of T\n", grasp.t_switch);
   FormatSprings(out, grasp);
   FormatFingers(out, grasp);
@@ -317,7 +318,8 @@ Grasp ParseGrasp(const std::string& text, const std::string& name) {
   YamlReader yaml = YamlReader::FromText(text, name);
   Grasp grasp;
   ReadRequired(yaml, "name", grasp.name);
-  ReadRequired(yaml, "type", grasp.type, std::vector<std::string>{"pinch", "tripod", "power", "lateral"});
+  ReadRequired(yaml, "type", grasp.type,
+               std::vector<std::string>{"pinch", "tripod", "power", "lateral"});
   yaml.Read("source", grasp.source);
   yaml.Read("profile", grasp.profile, {"human", "paper"});
   yaml.Read("hand_length", grasp.hand_length, Bounds{0.05, 0.5});

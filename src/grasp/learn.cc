@@ -200,8 +200,9 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   // Frames at contact: H (where it was not recorded), G, O.
   const Pose X_HG_nominal = NominalGraspInHand(options);
   if (!track.orientation) {
-    track = WithHandFrame(track, HandFromFingers(track, segment, TipsAtContact(track, segment.contact),
-                                                 closing, X_HG_nominal));
+    track =
+        WithHandFrame(track, HandFromFingers(track, segment, TipsAtContact(track, segment.contact),
+                                             closing, X_HG_nominal));
   }
   const Fingertips relaxed = RelaxedTips(options);
   Fingertips p_HC = TipsAtContact(track, segment.contact);
@@ -219,8 +220,7 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
     for (int i = 0; i < kNumFingers; ++i) p_WF[i] = X_WH * p_HC[i];
     const Pose X_WG = X_WH * grasp.X_HG;
     const Vector3d up = demonstration.up.value_or(X_WG.linear().col(1));
-    const InferredObject inferred =
-        InferObject(p_WF, grasp.involved, X_WG, up, options.tip_radius);
+    const InferredObject inferred = InferObject(p_WF, grasp.involved, X_WG, up, options.tip_radius);
     X_WO = inferred.X_AO;
     grasp.shape = inferred.shape;
   }
@@ -241,16 +241,16 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   const Pose X_GH = grasp.X_HG.inverse();
   const int steps = static_cast<int>(std::ceil(1.35 * reach.T / track.dt));
   const HandPath path = RollOutHand(grasp.reach, X_GH, reach.T, track.dt, steps);
-  grasp.scales.A = std::max(
-      0.02, ((path.X_OG.front() * X_GH).translation() - grasp.X_OH.translation()).norm());
+  grasp.scales.A =
+      std::max(0.02, ((path.X_OG.front() * X_GH).translation() - grasp.X_OH.translation()).norm());
 
   // The fingers along it; while the reach was completed they rest.
   FitProblem fit;
   const int reach_steps = static_cast<int>(std::floor(reach.T / track.dt)) + 1;
   for (int n = 0; n < reach_steps; ++n) {
     const double t = segment.begin * track.dt + n * track.dt - reach.lead;
-    const int k = std::clamp(static_cast<int>(std::lround(t / track.dt)), segment.begin,
-                             segment.contact);
+    const int k =
+        std::clamp(static_cast<int>(std::lround(t / track.dt)), segment.begin, segment.contact);
     Fingertips tips = track.p_HF[static_cast<std::size_t>(k)];
     PoseUnseenFingers(track.observed, grasp.involved, relaxed, tips);
     fit.p_HF.push_back(tips);
@@ -305,8 +305,8 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   grasp.dc = gains.dc;
   for (std::size_t e = 0; e < fit.run.edges.size(); ++e) {
     const auto [i, j] = fit.run.edges[e];
-    grasp.edges.push_back({i, j, gains.k[e], fit.run.rest_lengths[e], gains.d[e],
-                           fitted.standard_errors[e]});
+    grasp.edges.push_back(
+        {i, j, gains.k[e], fit.run.rest_lengths[e], gains.d[e], fitted.standard_errors[e]});
   }
   for (int i = 0; i < kNumFingers; ++i) {
     grasp.offset[i] = grasp.involved[i] ? Vector3d(fitted.p_HF[i] - p_HC[i]) : fitted.p_HF[i];

@@ -15,9 +15,9 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr int kMostRows = 120;        // measured instants used; more are thinned out
-constexpr double kStiffness = 0.03;   // k/kc where nothing was observed, and where the fit starts
-constexpr double kDamping = 0.07;     // d_e/dc at the start (spring-model note, section 5)
+constexpr int kMostRows = 120;       // measured instants used; more are thinned out
+constexpr double kStiffness = 0.03;  // k/kc where nothing was observed, and where the fit starts
+constexpr double kDamping = 0.07;    // d_e/dc at the start (spring-model note, section 5)
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // Where a fit starts: gains of movements that close early, late, and slowly.
@@ -89,8 +89,7 @@ SpringObservation MakeObservation(const FitProblem& problem, const std::vector<i
     const double position = std::min(out.t[n] / problem.dt, static_cast<double>(even - 1));
     const auto k = std::min(static_cast<Eigen::Index>(position), even - 2);
     const double fraction = position - static_cast<double>(k);
-    const bool in_recording =
-        out.t[n] >= problem.lead && static_cast<std::size_t>(n) < measured;
+    const bool in_recording = out.t[n] >= problem.lead && static_cast<std::size_t>(n) < measured;
     for (std::size_t f = 0; f < fingers.size(); ++f) {
       if (!tips[fingers[f]]) continue;
       const auto column = static_cast<Eigen::Index>(f) * dim;
@@ -103,6 +102,9 @@ SpringObservation MakeObservation(const FitProblem& problem, const std::vector<i
       }
     }
   }
+  // Where the fit of the start begins.
+  out.p_smooth.row(0) = SystemPoints(run, fingers, run.p_HF).reshaped().transpose();
+  out.v.row(0).setZero();
   return out;
 }
 
@@ -139,16 +141,16 @@ void SetStart(const SpringTrajectory& trajectory, const std::vector<int>& finger
 // Reproduction errors of a run over the measured samples; returns the RMS over everything
 // measured, the distance of the involved tips from their contacts at T included.
 double Reproduce(const FitProblem& problem, const FingerRun& run, FitResult& result) {
-  std::vector<double> acceleration = problem.acceleration;
-  const FingerMotion motion = SimulateFingers(run, acceleration, problem.dt);
+  const auto motion = SimulateFingers(run, problem.acceleration, problem.dt);
+  if (!motion) return std::numeric_limits<double>::infinity();
   PerFinger<double> sum = {};
   double total = 0;
   double count = 0;
   const auto at = [&](double t, int i) -> Vector3d {
     const double position = t / problem.dt;
-    const auto n = std::min(static_cast<std::size_t>(position), motion.p_HF.size() - 2);
+    const auto n = std::min(static_cast<std::size_t>(position), motion->p_HF.size() - 2);
     const double fraction = position - static_cast<double>(n);
-    return (1 - fraction) * motion.p_HF[n][i] + fraction * motion.p_HF[n + 1][i];
+    return (1 - fraction) * motion->p_HF[n][i] + fraction * motion->p_HF[n + 1][i];
   };
   for (std::size_t n = 0; n < problem.sample_t.size(); ++n) {
     for (int i = 0; i < kNumFingers; ++i) {
@@ -203,6 +205,7 @@ FitResult FitSprings(const FitProblem& problem) {
 
     const SpringEstimate estimate =
         EstimateSprings({MakeObservation(problem, fingers, run)}, options);
+    if (!estimate.reproduced[0].p.row(0).allFinite()) continue;  // ran away
     FitResult result;
     result.standard_errors.assign(run.edges.size(), 0.0);
     run.gains.kc *= estimate.kc_factor;
@@ -226,13 +229,19 @@ FitResult FitSprings(const FitProblem& problem) {
     result.t_switch = run.t_switch;
     result.p_HF = run.p_HF;
     result.v_HF = run.v_HF;
-    result.condition_number = estimate.linear.condition_number;
+    // Infinite where a spring shows in no frame; then that of the trajectory fit says more.
+    for (const double condition :
+         {estimate.condition_number, estimate.linear.condition_number}) {
+      if (std::isfinite(condition)) result.condition_number = condition;
+    }
     const double error = Reproduce(problem, run, result);
     if (error < best_error) {
       best_error = error;
       best = result;
     }
   }
+  ThrowUnless(std::isfinite(best_error),
+              "the fingertip springs could not be fitted: the movement runs away");
   return best;
 }
 

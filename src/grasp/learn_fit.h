@@ -10,16 +10,16 @@
 namespace springgrasp {
 
 struct FitProblem {
-  FingerRun run;                     // start, contacts, edges, T, t_switch; gains are found
+  FingerRun run;  // start, contacts, edges, T, t_switch; gains are found
   ReachScales scales;
   std::vector<double> acceleration;  // |a| of H's origin from t = 0 on, even steps of `dt`
   std::vector<Fingertips> p_HF;      // smoothed tips from 0 to T, even steps of `dt`
   double dt = 0.01;                  // s
   std::vector<double> sample_t;      // s, measured instants between 0 and T
   std::vector<PerFinger<std::optional<Eigen::Vector3d>>> sample_p_HF;
-  double lead = 0;                   // s, completed before the recording: the fingers rest
+  double lead = 0;  // s, completed before the recording: the fingers rest
   PerFinger<bool> observed = {};
-  bool human = true;                 // fit delay and closing gain
+  bool human = true;  // fit delay and closing gain
   bool fit_switch = false;
 };
 
@@ -30,7 +30,7 @@ struct FitResult {
   std::vector<double> standard_errors;  // of k, per edge, N/m; 0 where not estimated
   double condition_number = 0;          // of the scaled regression (Eq. 8)
   // Of what these values generate, over the measured samples.
-  PerFinger<double> rmse = {};          // m
+  PerFinger<double> rmse = {};  // m
   PerFinger<int> samples = {};
 };
 

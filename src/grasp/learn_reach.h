@@ -10,9 +10,9 @@ namespace springgrasp {
 
 struct LearnedReach {
   PoseDmp dmp;
-  double T = 1;              // s
-  double lead = 0, tail = 0; // s, completed at the ends where the recording was cut (5.4)
-  double rmse = 0;           // of the origin of G where it was measured, m
+  double T = 1;               // s
+  double lead = 0, tail = 0;  // s, completed at the ends where the recording was cut (5.4)
+  double rmse = 0;            // of the origin of G where it was measured, m
 };
 
 // From smoothed poses X_OG at even steps of `dt`, the reach from its start to the contact,

@@ -8,10 +8,10 @@ namespace springgrasp {
 
 // Indices into even samples.
 struct ReachSegment {
-  int begin = 0;         // first 5 % of peak speed (0: cut in mid-movement or already moving)
-  int peak = 0;          // largest hand speed of the reach
-  int stop = 0;          // hand at rest after the reach
-  int contact = 0;       // hand at rest and involved fingers settled: end of the movement
+  int begin = 0;              // first 5 % of peak speed (0: cut in mid-movement or already moving)
+  int peak = 0;               // largest hand speed of the reach
+  int stop = 0;               // hand at rest after the reach
+  int contact = 0;            // hand at rest and involved fingers settled: end of the movement
   bool cut_at_begin = false;  // still moving at the first or last sample
   bool cut_at_end = false;
 };

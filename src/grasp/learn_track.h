@@ -12,18 +12,18 @@
 namespace springgrasp {
 
 struct HandTrack {
-  double dt = 0.01;                    // s
-  double t0 = 0;                       // s, the recording's time of the first step
-  bool wrist = false;                  // else H's origin is the thumb-index midpoint
-  bool orientation = false;            // else H's axes are the world's
+  double dt = 0.01;          // s
+  double t0 = 0;             // s, the recording's time of the first step
+  bool wrist = false;        // else H's origin is the thumb-index midpoint
+  bool orientation = false;  // else H's axes are the world's
   std::vector<Pose> X_WH;
-  std::vector<Fingertips> p_HF;        // gaps bridged in H, where fingers move least
+  std::vector<Fingertips> p_HF;  // gaps bridged in H, where fingers move least
   // As measured, at the recording's own times (s, from t0), seen from the smoothed hand.
   std::vector<double> sample_t;
   std::vector<PerFinger<std::optional<Eigen::Vector3d>>> sample_p_HF;
-  PerFinger<bool> observed = {};       // seen often enough to learn from
-  double tip_noise = 0;                // deviation of a measured tip coordinate, m
-  double hand_noise = 0;               // the same of the wrist, m
+  PerFinger<bool> observed = {};  // seen often enough to learn from
+  double tip_noise = 0;           // deviation of a measured tip coordinate, m
+  double hand_noise = 0;          // the same of the wrist, m
 
   int size() const { return static_cast<int>(X_WH.size()); }
 };

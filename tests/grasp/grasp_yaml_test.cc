@@ -115,7 +115,8 @@ TEST(GraspYamlTest, EveryNumberSurvivesWritingAndReading) {
     EXPECT_TRUE(a.X_OH.isApprox(b.X_OH, 1e-14));
     EXPECT_TRUE(a.X_HG.isApprox(b.X_HG, 1e-14));
     for (int i = 0; i < kNumFingers; ++i) {
-      if (a.involved[i]) EXPECT_EQ(a.rays[i].direction, b.rays[i].direction);
+      if (!a.involved[i]) continue;
+      EXPECT_EQ(a.rays[i].direction, b.rays[i].direction);
     }
   }
 }

@@ -13,17 +13,17 @@ namespace springgrasp {
 
 struct SyntheticGrasp {
   std::string type = "pinch";
-  Shape shape;                       // sphere or upright cylinder
-  double duration = 1.0;             // s, of the reach
-  double rate = 100;                 // Hz
-  double opening = 0.035;            // m, every finger at the peak beyond its contact
-  double start = 0.015;              // m, the same at the start
-  double peak = 0.65;                // fraction of the duration
-  double tip_noise = 0;              // m, deviation of every tip coordinate
-  double hand_noise = 0;             // m, of every wrist coordinate
-  double hand_angle_noise = 0;       // rad
-  double missing = 0;                // probability that a tip is not seen
-  double tip_radius = 0.008;         // m
+  Shape shape;                  // sphere or upright cylinder
+  double duration = 1.0;        // s, of the reach
+  double rate = 100;            // Hz
+  double opening = 0.035;       // m, every finger at the peak beyond its contact
+  double start = 0.015;         // m, the same at the start
+  double peak = 0.65;           // fraction of the duration
+  double tip_noise = 0;         // m, deviation of every tip coordinate
+  double hand_noise = 0;        // m, of every wrist coordinate
+  double hand_angle_noise = 0;  // rad
+  double missing = 0;           // probability that a tip is not seen
+  double tip_radius = 0.008;    // m
   Eigen::Vector3d start_from = {0.05, -0.28, 0.08};  // m, hand at the start less hand at contact
   Pose X_WO = Pose::Identity();
   bool wrist = true;
@@ -95,8 +95,8 @@ inline Demonstration MakeDemonstration(const SyntheticGrasp& grasp, RandomEngine
     const double left = 1 - MinimumJerkStep(s);
     Pose X_WH = X_WH_end;
     X_WH.translation() += grasp.X_WO.linear() * grasp.start_from * left;
-    X_WH.linear() = X_WH_end.linear() * ExpRotation(Eigen::Vector3d(0.2, -0.3, 0.1) * left)
-                                            .toRotationMatrix();
+    X_WH.linear() =
+        X_WH_end.linear() * ExpRotation(Eigen::Vector3d(0.2, -0.3, 0.1) * left).toRotationMatrix();
     const double open =
         s < grasp.peak
             ? grasp.start + (grasp.opening - grasp.start) * MinimumJerkStep(s / grasp.peak)
