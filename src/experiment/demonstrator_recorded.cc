@@ -175,6 +175,28 @@ std::vector<Pose> SolveHandPath(const HumanHand& human, const std::vector<double
   return poses;
 }
 
+// Notes which recorded fingertips the hand cannot reach: the MMM thumb is shorter than a person's.
+void NoteMisses(const DemonstratorHand& hand, const Demonstration& recording, HandMotion& motion) {
+  constexpr double kWorthNoting = 0.003;  // m
+  PerFinger<std::vector<double>> misses;
+  for (std::size_t i = 0; i < motion.samples.size(); ++i) {
+    const HandShape shape = ComputeHandShape(hand, motion.samples[i].q);
+    for (int f = 0; f < kNumFingers; ++f) {
+      const auto& recorded = recording.samples[i].p_WF[f];
+      if (!recorded) continue;
+      misses[f].push_back((motion.samples[i].X_WH * shape.tips[f] - *recorded).norm());
+    }
+  }
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (misses[f].empty()) continue;
+    std::sort(misses[f].begin(), misses[f].end());
+    const double median = misses[f][misses[f].size() / 2];
+    if (median < kWorthNoting) continue;
+    motion.comments.push_back(fmt::format("shown {} lies {:.0f} mm (median) from the recorded one",
+                                          kFingerNames[f], 1000 * median));
+  }
+}
+
 }  // namespace
 
 HandMotion HandMotionOf(const DemonstratorHand& hand, const Demonstration& recording,
@@ -243,6 +265,7 @@ HandMotion HandMotionOf(const DemonstratorHand& hand, const Demonstration& recor
     for (int f = 0; f < kNumFingers; ++f) sample.recorded[f] = recorded.p_WF[f].has_value();
     motion.samples.push_back(sample);
   }
+  NoteMisses(hand, recording, motion);
   return motion;
 }
 

@@ -46,10 +46,10 @@ struct Approach {
 Approach ApproachOf(const std::string& type) {
   if (type == "pinch" || type == "tripod") {
     // From the right and behind, over the object, the last part from above.
-    return {{0.85, 0.25, 0.25}, {0, 0, 0.16}, {0.0, -0.1, -0.25}};
+    return {{0.9, 0.1, 0.25}, {0, 0, 0.16}, {0.0, -0.1, -0.25}};
   }
-  if (type == "power") return {{0.85, 0.35, -0.2}, {-0.1, 0.16, 0.0}, {0.1, 0.15, 0.0}};
-  return {{0.9, 0.2, -0.25}, {0.0, 0.05, 0.05}, {0.1, 0.15, 0.0}};
+  if (type == "power") return {{0.95, 0.1, -0.2}, {-0.1, 0.22, 0.0}, {0.1, 0.15, 0.0}};
+  return {{0.95, 0.05, -0.25}, {0.0, 0.05, 0.05}, {0.1, 0.15, 0.0}};
 }
 
 // The hand open around the object: from the held posture, thumb and involved fingers stretched.

@@ -1,6 +1,7 @@
 #include "experiment/observe.h"
 
-#include <cmath>
+#include <algorithm>
+#include <utility>
 
 #include "base/error.h"
 #include "experiment/demonstrator_recorded.h"
@@ -8,20 +9,25 @@
 #include "experiment/observe_noise.h"
 #include "experiment/observe_placement.h"
 #include "render/video_writer.h"
-#include "vision/fingertip_tracker.h"
 #include "vision/overlay.h"
 
 namespace springgrasp {
 namespace {
 
-DemonstrationSample SampleOf(const TrackedFrame& frame, double t) {
-  DemonstrationSample sample;
-  sample.t = t;
-  for (int f = 0; f < kNumFingers; ++f) {
-    sample.p_WF[f] = frame.fingers[f].p_W;
-    sample.confidence[f] = frame.fingers[f].p_W ? frame.fingers[f].confidence : 0;
+// Puts a track on the instants of the truth; those from before the caps were found stay empty.
+std::vector<DemonstrationSample> OnInstantsOf(const Demonstration& truth,
+                                              const std::vector<DemonstrationSample>& track) {
+  constexpr double kSame = 1e-4;  // s
+  std::vector<DemonstrationSample> samples;
+  std::size_t next = 0;
+  for (const DemonstrationSample& shown : truth.samples) {
+    while (next < track.size() && track[next].t < shown.t - kSame) ++next;
+    DemonstrationSample sample;
+    if (next < track.size() && track[next].t < shown.t + kSame) sample = track[next];
+    sample.t = shown.t;
+    samples.push_back(sample);
   }
-  return sample;
+  return samples;
 }
 
 std::string PoseText(const Pose& X) {
@@ -99,51 +105,48 @@ Observation ObserveMotion(ObserveStage& stage, const HandMotion& motion, RandomE
   Observation result;
   result.shown = Resampled(motion, options.fps);
   result.truth = TruthOf(stage.hand(), result.shown);
+  PictureNoise noise(options.noise, engine);
+  std::size_t next = 0;
+  const FrameSource camera = [&]() -> std::optional<StereoFrame> {
+    if (next == result.shown.samples.size()) return std::nullopt;
+    const HandMotionSample& shown = result.shown.samples[next];
+    stage.Show(shown, motion.object);
+    StereoFrame frame{shown.t, stage.Picture(0), stage.Picture(1)};
+    noise.AddTo(frame.left, engine);
+    noise.AddTo(frame.right, engine);
+    if (shown.t >= 0 && options.measure_visible) {
+      const PerFinger<double> left = stage.VisibleCaps(0), right = stage.VisibleCaps(1);
+      PerFinger<double> both;
+      for (int f = 0; f < kNumFingers; ++f) both[f] = std::min(left[f], right[f]);
+      result.visible.push_back(both);
+    }
+    if (!options.frames_folder.empty()) {
+      WriteImage(fmt::format("{}/left_{:04d}.png", options.frames_folder, next), frame.left);
+      WriteImage(fmt::format("{}/right_{:04d}.png", options.frames_folder, next), frame.right);
+    }
+    ++next;
+    return frame;
+  };
+  std::optional<VideoWriter> video;
+  if (!options.overlay.empty()) video.emplace(options.overlay, options.fps);
+  const InstantCallback draw = [&](const TrackedInstant& instant) {
+    if (!video) return;
+    OverlayOptions overlay;
+    overlay.t = std::max(0.0, instant.frame.t);
+    if (instant.hand != nullptr) overlay.X_WH = instant.hand->X_WH;
+    video->Add(DrawOverlay(instant.frame.left, instant.frame.right, stage.eyes(), instant.tracked,
+                           instant.tracker.cap().radius, overlay));
+  };
+  TrackDemonstrationOptions tracking;
+  tracking.lead_in = -result.shown.samples.front().t;
+  result.tracked = TrackStereo(camera, stage.eyes(), &stage.hand().tree, tracking, engine, draw,
+                               &result.summary);
+  if (video) video->Finish();
   result.tracked.source = motion.source;
   result.tracked.up = motion.up;
   result.tracked.object = motion.object;
   result.tracked.comments = motion.comments;
-
-  FingertipTracker tracker(stage.eyes(), TrackerOptions{});
-  PictureNoise noise(options.noise, engine);
-  std::optional<VideoWriter> video;
-  if (!options.overlay.empty()) video.emplace(options.overlay, options.fps);
-  int frame_number = 0;
-  for (const HandMotionSample& shown : result.shown.samples) {
-    stage.Show(shown, motion.object);
-    cv::Mat pictures[2] = {stage.Picture(0), stage.Picture(1)};
-    for (cv::Mat& picture : pictures) noise.AddTo(picture, engine);
-    TrackedFrame frame;
-    if (tracker.started()) {
-      frame = tracker.Update(pictures[0], pictures[1], engine);
-    } else if (auto first = tracker.Start(pictures[0], pictures[1])) {
-      frame = *first;
-    }
-    if (shown.t >= 0) {
-      result.tracked.samples.push_back(SampleOf(frame, shown.t));
-      if (options.measure_visible) {
-        const PerFinger<double> left = stage.VisibleCaps(0), right = stage.VisibleCaps(1);
-        PerFinger<double> both;
-        for (int f = 0; f < kNumFingers; ++f) both[f] = std::min(left[f], right[f]);
-        result.visible.push_back(both);
-      }
-    }
-    if (!options.frames_folder.empty()) {
-      for (int eye = 0; eye < 2; ++eye) {
-        WriteImage(fmt::format("{}/{}_{:04d}.png", options.frames_folder,
-                               eye == 0 ? "left" : "right", frame_number),
-                   pictures[eye]);
-      }
-    }
-    if (video) {
-      OverlayOptions overlay;
-      overlay.t = std::max(0.0, shown.t);
-      video->Add(DrawOverlay(pictures[0], pictures[1], stage.eyes(), frame, tracker.cap().radius,
-                             overlay));
-    }
-    ++frame_number;
-  }
-  if (video) video->Finish();
+  result.tracked.samples = OnInstantsOf(result.truth, result.tracked.samples);
   result.errors = CompareToTruth(result.tracked, result.truth, result.visible);
   return result;
 }

@@ -10,6 +10,7 @@
 #include "demonstration/hand_motion.h"
 #include "experiment/observe_stage.h"
 #include "sim/scene.h"
+#include "vision/track_demonstration.h"
 
 namespace springgrasp {
 
@@ -42,6 +43,7 @@ struct Observation {
   // Per instant of `truth` the smaller of both eyes' visible fractions; empty if not measured.
   std::vector<PerFinger<double>> visible;
   ObservationErrors errors;
+  TrackingSummary summary;  // the tracker's own account
 };
 
 // The shape that the scene's demonstrator shows: `demonstrator.object`, or the first object's;

@@ -50,29 +50,33 @@ double SegmentDistance(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const
   return (w + s * u - t * v).norm();
 }
 
-// Whether an eye at p_ME sees the tip of finger f: neither the object nor another part of the hand
-// lies on the line of sight.
-bool Sees(const DemonstratorHand& hand, const Instant& instant, const HandMotion& motion,
-          const Eigen::Vector3d& p_ME, int f) {
+// Part of the tip of finger f that an eye at p_ME sees, 0..1, by how far the line of sight passes
+// from the object and the other parts of the hand: half where it just touches.
+double Seen(const DemonstratorHand& hand, const Instant& instant, const HandMotion& motion,
+            const Eigen::Vector3d& p_ME, int f) {
   const Eigen::Vector3d& tip = instant.shape.tips[f];
+  double clearance = 1;
   if (motion.object) {
     const Pose X_OM = motion.object->X_WO.inverse();
     const Eigen::Vector3d direction = (p_ME - tip).normalized();
-    for (double along = 0.002; along < 0.15; along += 0.004) {
-      if (SignedDistance(motion.object->shape, X_OM * Eigen::Vector3d(tip + along * direction)) < 0)
-        return false;
+    for (double along = 0.004; along < 0.2; along += 0.006) {
+      clearance = std::min(
+          clearance,
+          SignedDistance(motion.object->shape, X_OM * Eigen::Vector3d(tip + along * direction)));
     }
   }
   for (int g = 0; g < kNumFingers; ++g) {
     const auto& chain = instant.shape.chains[g];
     // The metacarpal, then the segments; of the own finger not the last two.
-    if (SegmentDistance(p_ME, tip, instant.wrist, chain[0]) < kPalmRadius) return false;
+    clearance =
+        std::min(clearance, SegmentDistance(p_ME, tip, instant.wrist, chain[0]) - kPalmRadius);
     const std::size_t segments = chain.size() - 1 - (g == f ? 2 : 0);
     for (std::size_t k = 0; k < segments; ++k) {
-      if (SegmentDistance(p_ME, tip, chain[k], chain[k + 1]) < hand.finger_radius) return false;
+      clearance = std::min(clearance,
+                           SegmentDistance(p_ME, tip, chain[k], chain[k + 1]) - hand.finger_radius);
     }
   }
-  return true;
+  return std::clamp(0.5 + clearance / (2 * hand.tip_radius), 0.0, 1.0);
 }
 
 class Search {
@@ -154,11 +158,11 @@ class Search {
     place.palm_deg = angle / double(instants_.size()) * 180 / M_PI;
     double others = 0;
     CountSeen(X_MW, place.visible, others);
-    // Nearest depth with margin, palm to the eyes within some 40 degrees, most tips seen.
+    // Nearest depth with margin, palm to the eyes within some 30 degrees, most tips seen.
     const double up = X_WM.linear().row(2).dot(motion_.up);
     const double score = 100 * place.visible + 25 * others -
                          3 * std::max(0.0, options_.margin_px - place.margin_px) -
-                         0.4 * std::max(0.0, place.palm_deg - 35) -
+                         1.0 * std::max(0.0, place.palm_deg - 30) -
                          30 * std::abs(depth - (options_.near + options_.far) / 2) + 5 * up;
     if (score > best_score_) {
       best_score_ = score;
@@ -187,9 +191,8 @@ class Search {
         const int group = motion_.involved[f] ? 0 : 1;
         const double weight = i.late ? 2 : 1;
         counts[group] += weight;
-        if (Sees(hand_, i, motion_, eyes_M[0], f) && Sees(hand_, i, motion_, eyes_M[1], f)) {
-          seen[group] += weight;
-        }
+        seen[group] += weight * std::min(Seen(hand_, i, motion_, eyes_M[0], f),
+                                         Seen(hand_, i, motion_, eyes_M[1], f));
       }
     }
     involved = counts[0] > 0 ? seen[0] / counts[0] : 1;
