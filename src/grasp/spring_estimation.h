@@ -41,7 +41,7 @@ struct EstimationOptions {
   double rcond = 1e-10;   // relative threshold of singular values
   double trim = 0;        // s dropped at both ends for the regression
   double noise = 0;       // m, deviation of a coordinate of p; 0: from the residuals
-  double step = 0.01;     // s, largest integration step of the fit
+  double step = 0.005;    // s, largest integration step of the fit
   int max_iterations = 40;
   // A weak pull of log gains to their start (deviation of the factor's logarithm), 0: none.
   double gain_prior = 0;

@@ -120,15 +120,20 @@ SmoothCurve FitSmoothCurve(const VectorXd& t, const MatrixXd& x, double cutoff,
       }
     }
   }
-  // Integral of the squared third derivative, taken at the knots.
-  const double lambda = curve.spacing / std::pow(kTwoPi * cutoff, 6) / std::pow(curve.spacing, 6);
+  // Integral of the squared third derivative, a quadratic spline whose coefficients are third
+  // differences; products of quadratic B-splines integrate to kGram.
+  const double lambda = std::pow(kTwoPi * cutoff, -6) * std::pow(curve.spacing, -5);
   constexpr std::array<double, 4> kThird = {-1, 3, -3, 1};
+  constexpr std::array<double, 3> kGram = {11.0 / 20, 13.0 / 60, 1.0 / 120};
   for (Index i = 0; i + 3 < n; ++i) {
-    for (Index j = 0; j < 4; ++j) {
-      for (Index k = 0; k < 4; ++k) {
-        entries.emplace_back(
-            i + j, i + k,
-            lambda * kThird[static_cast<std::size_t>(j)] * kThird[static_cast<std::size_t>(k)]);
+    for (Index j = std::max<Index>(i - 2, 0); j < std::min(i + 3, n - 3); ++j) {
+      const double gram = lambda * kGram[static_cast<std::size_t>(std::abs(i - j))];
+      for (Index a = 0; a < 4; ++a) {
+        for (Index b = 0; b < 4; ++b) {
+          entries.emplace_back(
+              i + a, j + b,
+              gram * kThird[static_cast<std::size_t>(a)] * kThird[static_cast<std::size_t>(b)]);
+        }
       }
     }
   }
@@ -204,7 +209,7 @@ MatrixXd FiltFilt(const MatrixXd& x, double dt, double cutoff) {
   const double b0 = 1 / a0, b1 = 2 * b0, a1 = 2 * (1 - c * c) / a0;
   const double a2 = (1 - std::sqrt(2.0) * c + c * c) / a0;
   // The padding lets the start-up die out.
-  const auto settle = static_cast<Index>(std::ceil(1.0 / (cutoff * dt)));
+  const auto settle = static_cast<Index>(std::ceil(3.0 / (cutoff * dt)));
   const Index pad = std::min(x.rows() - 1, std::max<Index>(9, settle));
   const Index n = x.rows() + 2 * pad;
   MatrixXd out(x.rows(), x.cols());

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -93,10 +94,13 @@ TEST(SpringEstimation, TrajectoryFitFindsTheConstantsFromPositionsAlone) {
   for (const int dim : {2, 3}) {
     const SpringSystem system = GraspSystem(true, dim);
     const auto o = Demonstrate(system, ReachForce(0.04), 23, 1.5, 0, engine, false);
-    const SpringEstimate estimate = EstimateSprings({o});
-    EXPECT_LT(RelativeError(estimate.k, TrueConstants(system)), 1e-2);
-    EXPECT_LT(estimate.finger_rmse[0].maxCoeff(), 1e-5);
-    EXPECT_TRUE(estimate.converged);
+    // With the demonstration's own step nothing but the constants is left to be found.
+    const SpringEstimate exact = EstimateSprings({o}, {.step = 0.002});
+    EXPECT_LT(RelativeError(exact.k, TrueConstants(system)), 1e-6);
+    EXPECT_LT(exact.finger_rmse[0].maxCoeff(), 1e-8);
+    EXPECT_TRUE(exact.converged);
+    const SpringEstimate coarse = EstimateSprings({o});
+    EXPECT_LT(RelativeError(coarse.k, TrueConstants(system)), 1e-2);
   }
 }
 
@@ -105,7 +109,7 @@ TEST(SpringEstimation, TrajectoryFitBeatsTheRegressionOnNoisyData) {
   for (const bool power : {true, false}) {
     std::vector<double> linear, fitted;
     int inside = 0, free = 0;
-    for (std::uint64_t draw = 0; draw < 8; ++draw) {
+    for (std::uint64_t draw = 0; draw < 6; ++draw) {
       RandomEngine engine = MakeStream(3, draw, "noise");
       const auto o =
           Demonstrate(GraspSystem(power), ReachForce(0.04), 23, 1.5, 0.001, engine, false);
@@ -123,7 +127,7 @@ TEST(SpringEstimation, TrajectoryFitBeatsTheRegressionOnNoisyData) {
     RecordProperty(power ? "power_fitted" : "pinch_fitted", std::to_string(Median(fitted)));
     EXPECT_LT(Median(fitted), 0.6 * Median(linear));
     EXPECT_LT(Median(fitted), 0.3);
-    EXPECT_GT(inside, 0.85 * free);
+    EXPECT_GT(inside, 0.8 * free);
   }
 }
 
@@ -154,10 +158,10 @@ TEST(SpringEstimation, GainDelayClosingAndSwitchAreFoundTogetherWithTheConstants
 TEST(SpringEstimation, PoolingDemonstrationsReducesTheError) {
   const SpringSystem system = GraspSystem(true);
   std::vector<double> single, pooled;
-  for (std::uint64_t draw = 0; draw < 5; ++draw) {
+  for (std::uint64_t draw = 0; draw < 3; ++draw) {
     RandomEngine engine = MakeStream(5, draw, "pool");
     std::vector<SpringObservation> observations;
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 3; ++i) {
       observations.push_back(
           Demonstrate(system, ReachForce(0.03 + 0.01 * i), 23, 1.5, 0.001, engine, false));
     }
@@ -177,9 +181,9 @@ TEST(SpringEstimation, MissingSamplesAreLeftOut) {
     o.p.row(i).segment(4, 2).setConstant(nan);
     o.p_smooth.row(i).segment(4, 2).setConstant(nan);
   }
-  const SpringEstimate estimate = EstimateSprings({o});
+  const SpringEstimate estimate = EstimateSprings({o}, {.step = 0.002});
   EXPECT_LT(RelativeError(estimate.linear.k, TrueConstants(system)), 1e-8);
-  EXPECT_LT(RelativeError(estimate.k, TrueConstants(system)), 1e-4);
+  EXPECT_LT(RelativeError(estimate.k, TrueConstants(system)), 1e-6);
 }
 
 TEST(SpringEstimation, AnUndeterminedConstantIsSaidPlainly) {
