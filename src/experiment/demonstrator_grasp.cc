@@ -192,15 +192,17 @@ class HeldProblem {
     }
   }
 
-  // Neighbouring fingers lie beside each other in their order.
+  // Neighbouring fingers lie beside each other in their order, fanned out so far that their caps
+  // (10 mm in radius) do not touch: people are asked to, so that the cameras can tell them apart.
   void AddSeparations() {
-    constexpr double kPush = 60;
+    constexpr double kPush = 60, kCapsApart = 0.023;
     const double apart = 2 * hand_.tip_radius + 0.002;
     for (int f = kIndex; f + 1 < kNumFingers; ++f) {
       const auto& a = parts_.chains[f];
       const auto& b = parts_.chains[f + 1];
       for (std::size_t k = 1; k < std::min(a.size(), b.size()); ++k) {
-        Add(std::max(0.0, apart - (a[k].y() - b[k].y())) * kPush);
+        const bool tips = k + 1 == a.size();
+        Add(std::max(0.0, (tips ? kCapsApart : apart) - (a[k].y() - b[k].y())) * kPush);
       }
     }
   }

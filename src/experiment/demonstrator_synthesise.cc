@@ -101,22 +101,26 @@ double GripSize(const DemonstratorHand& hand, const HeldPosture& held) {
   return Aperture(hand, held.q) - 2 * hand.tip_radius;
 }
 
+// A hand about to grasp is nearly closed: as if it held something smaller, its caps just apart.
+Eigen::VectorXd StartPosture(const DemonstratorHand& hand, const HeldPosture& held,
+                             const SynthesiseOptions& options, const Eigen::VectorXd& spread) {
+  constexpr double kSmaller = 0.65, kLeastAperture = 0.035;  // m
+  if (Aperture(hand, held.q) < kLeastAperture) {
+    return PostureOfAperture(hand, held.q, spread, kLeastAperture);
+  }
+  Shape smaller = options.shape;
+  smaller.size *= kSmaller;
+  return SolveHeldPosture(hand, options.type, smaller).q;
+}
+
 // The whole movement. `bow` scales the path's curvature, `wider` is added to the peak aperture, m.
 std::vector<HandMotionSample> Perform(const DemonstratorHand& hand, const HeldPosture& held,
                                       const SynthesiseOptions& options, const Style& style,
                                       const Approach& approach, double bow_scale, double wider) {
-  const double end_aperture = Aperture(hand, held.q);
   const double peak_aperture = 0.051 + 0.67 * GripSize(hand, held) + style.aperture + wider;
   const Eigen::VectorXd spread = SpreadPosture(hand, held, options.type);
   const Eigen::VectorXd q_peak = PostureOfAperture(hand, held.q, spread, peak_aperture);
-  // A hand about to grasp is nearly closed, its caps just apart.
-  const double start_aperture = std::max(0.7 * end_aperture, 0.035);
-  const Eigen::VectorXd closed =
-      (held.q + 0.6 * (held.q - spread)).cwiseMax(hand.tree.lower).cwiseMin(hand.tree.upper);
-  const Eigen::VectorXd q_start = start_aperture > end_aperture
-                                      ? PostureOfAperture(hand, held.q, spread, start_aperture)
-                                      : PostureOfAperture(hand, closed, held.q, start_aperture);
-
+  const Eigen::VectorXd q_start = StartPosture(hand, held, options, spread);
   const Eigen::Quaterniond azimuth(Eigen::AngleAxisd(style.azimuth, Eigen::Vector3d::UnitZ()));
   Eigen::Vector3d from = azimuth * approach.from;
   from.z() += style.elevation;
