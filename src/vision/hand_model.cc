@@ -69,7 +69,7 @@ HandModel MakeHandModel(const KinematicTree& tree, const Eigen::VectorXd& rest) 
   const Eigen::Vector3d p_HT = X_HB[knuckle[kThumb]].translation();
   AddBone(model, 0, p_HT, 0.6 * X_HB[knuckle[kIndex]].translation(), kPalmRadius);
   // Forearm: explains skin beyond the wrist. x of H points to the middle knuckle.
-  for (int i = 1; i <= 3; ++i) model.balls.push_back({0, {-0.02 * i, 0, 0}, 0.026});
+  for (int i = 1; i <= 5; ++i) model.balls.push_back({0, {-0.02 * i, 0, 0}, 0.026});
 
   model.rest.resize(n);
   model.rest_sigma.resize(n);

@@ -100,6 +100,7 @@ double Saturate(double d, double reach, double sigma, double& slope) {
 //   joints        2 n             deviation from the last and from the resting posture
 //   couplings     1 each          DIP - 2/3 PIP
 //   scale         1
+//   palm          1               back of the hand faces away from the cameras (first frame)
 class FitProblem {
  public:
   FitProblem(const HandModel& model, const StereoCameras& cameras,
@@ -132,7 +133,7 @@ class FitProblem {
                              cameras.view(v).fx * 0.2 * last.scale / std::max(0.1, depth));
       num_residuals_ += static_cast<int>(model.balls.size() + fields_[v].samples.size());
     }
-    num_residuals_ += 6 + 2 * n_ + static_cast<int>(model.coupled.size()) + 1;
+    num_residuals_ += 6 + 2 * n_ + static_cast<int>(model.coupled.size()) + 2;
     node_motion_.assign(model.tree.nodes.size(), {});
     for (std::size_t b = 0; b < model.tree.nodes.size(); ++b) {
       for (int a = static_cast<int>(b); a >= 0; a = model.tree.nodes[a].parent) {
@@ -208,7 +209,7 @@ class FitProblem {
         Eigen::Vector2d slope;
         const double d = OutsideDistance(fields_[v], pixel_[i], slope);
         double gain;
-        r[at] = Saturate(d, options_.mask_reach_px, 2 * options_.mask_sigma_px, gain);
+        r[at] = Saturate(d, options_.mask_reach_px, options_.ball_sigma_px, gain);
         if (J != nullptr && d > 0) {
           PointJacobian(fit, model_.balls[i].node, p_W_[i]);
           J->row(at) = gain * slope.transpose() * J_pixel_[i] * J_point_;
@@ -224,7 +225,7 @@ class FitProblem {
         }
         if (least > 0) {
           double gain;
-          r[row] = Saturate(least, options_.mask_reach_px, options_.mask_sigma_px, gain);
+          r[row] = Saturate(least, options_.mask_reach_px, options_.skin_sigma_px, gain);
           if (J != nullptr) {
             PointJacobian(fit, model_.balls[nearest].node, p_W_[nearest]);
             const Eigen::Vector2d direction = (pixel_[nearest] - sample).normalized();
@@ -263,9 +264,19 @@ class FitProblem {
       }
       ++row;
     }
-    const double scale_sigma = first_ ? 0.1 : fit_scale_ ? 0.005 : 1e-6;
+    const double scale_sigma = first_ ? 0.06 : fit_scale_ ? 0.005 : 1e-6;
     r[row] = (x[6 + n_] - (first_ ? 0 : std::log(last_.scale))) / scale_sigma;
     if (J != nullptr) (*J)(row, 6 + n_) = 1 / scale_sigma;
+    ++row;
+    if (first_) {
+      constexpr double kPalmSigma = 0.35;  // of 1 - cosine: 50 degrees
+      const Eigen::Vector3d forward = cameras_.left.X_WC.linear().col(2);
+      const Eigen::Vector3d back = fit.X_WH.linear().col(2);
+      r[row] = (1 - back.dot(forward)) / kPalmSigma;
+      if (J != nullptr) {
+        J->block<1, 3>(row, 3) = forward.transpose() * Cross(back) * Jl_ / kPalmSigma;
+      }
+    }
   }
 
  private:
@@ -378,38 +389,43 @@ std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras&
     if (observation.tip_W[f]) seen.push_back(f);
   }
   if (seen.size() < 4) return std::nullopt;
-  const int n = model.tree.num_joints();
-  std::optional<HandFit> best;
-  for (const double bend : {0.0, 0.5, 1.0, 1.5}) {
-    HandFit start;
-    start.q = (bend * model.rest).cwiseMax(model.tree.lower).cwiseMin(model.tree.upper);
-    start.scale = 1;
-    Eigen::Matrix3Xd model_tips(3, seen.size()), seen_tips(3, seen.size());
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      model_tips.col(i) = ScaledFrame(model, start, model.tip[seen[i]]).translation();
-      seen_tips.col(i) = *observation.tip_W[seen[i]];
+  // Starts: palm to the cameras, fingers in the picture from the hand's skin to its tips, bent and
+  // tilted towards the cameras by some amounts.
+  const Eigen::Matrix3d R_WC = cameras.left.X_WC.linear();
+  const Eigen::Vector3d forward = R_WC.col(2);
+  Eigen::Vector3d tips = Eigen::Vector3d::Zero();
+  for (int f : seen) tips += *observation.tip_W[f] / static_cast<double>(seen.size());
+  Eigen::Vector3d along = Eigen::Vector3d::Zero();  // in the picture plane, from palm to tips
+  const auto tips_px = Project(cameras.left, tips);
+  if (!tips_px) return std::nullopt;
+  if (observation.masks[0] != nullptr && !observation.masks[0]->mask.empty()) {
+    const double depth = forward.dot(tips - cameras.left.X_WC.translation());
+    const MaskField field = MakeField(*observation.masks[0], 200, *tips_px,
+                                      0.16 * cameras.left.fx / std::max(0.1, depth));
+    for (const Eigen::Vector2d& sample : field.samples) {
+      along.head<2>() += *tips_px - sample;
     }
-    start.X_WH.matrix() = Eigen::umeyama(model_tips, seen_tips, false);
-    // Palm to the cameras: else the mirrored solution about the plane of the tips.
-    const Eigen::Vector3d forward = cameras.left.X_WC.linear().col(2);
-    FitProblem problem(model, cameras, observation, start, start.X_WH, true, true, options);
-    for (int flip = 0; flip < 2; ++flip) {
-      HandFit from = start;
-      if (flip == 1) {
-        // Half a turn about the tips' row would show the back; tilt the hand instead.
-        const Eigen::Vector3d middle = seen_tips.rowwise().mean();
-        const Eigen::Matrix3d tilt =
-            ExpRotation(0.8 * start.X_WH.linear().col(1)).toRotationMatrix();
-        from.X_WH.linear() = tilt * start.X_WH.linear();
-        from.X_WH.translation() = middle + tilt * (start.X_WH.translation() - middle);
-      }
-      HandFit fit = Solve(problem, model, from, options.start_iterations);
-      if (fit.X_WH.linear().col(2).dot(forward) < -0.2) continue;
+  }
+  if (along.norm() < 1e-6) along = -Eigen::Vector3d::UnitY();
+  along = (R_WC * along).normalized();
+  std::optional<HandFit> best;
+  for (const double bend : {0.3, 1.0, 1.7}) {
+    for (const double tilt : {-0.4, 0.0, 0.5, 1.0}) {
+      HandFit start;
+      start.q = (bend * model.rest).cwiseMax(model.tree.lower).cwiseMin(model.tree.upper);
+      start.X_WH.linear() << along, forward.cross(along), forward;
+      start.X_WH.linear() =
+          start.X_WH.linear() * ExpRotation(Eigen::Vector3d(0, tilt, 0)).toRotationMatrix();
+      Eigen::Vector3d model_tips = Eigen::Vector3d::Zero();
+      for (int f : seen)
+        model_tips += FittedTip(model, start, f) / static_cast<double>(seen.size());
+      start.X_WH.translation() = tips - model_tips;
+      FitProblem problem(model, cameras, observation, start, start.X_WH, true, true, options);
+      const HandFit fit = Solve(problem, model, start, options.start_iterations);
       if (!best || fit.cost < best->cost) best = fit;
     }
   }
   if (best) JudgeTips(model, observation, *best);
-  (void)n;
   return best;
 }
 

@@ -8,17 +8,19 @@
 namespace springgrasp {
 namespace {
 
-// Cr and Cb of ITU-R BT.601, in steps of 4, as index into SkinModel::likelihood.
+// Shares of red and green in the brightness, in steps of 1/128 from 1/4 and 1/8: shading leaves
+// them alone, which it does not do to differences as Cr and Cb.
 int ChromaBin(int b, int g, int r) {
-  const int cr = (r * 128 - g * 107 - b * 21) / 256 + 128;
-  const int cb = (b * 128 - g * 85 - r * 43) / 256 + 128;
-  return (std::clamp(cr, 0, 255) >> 2) * SkinModel::kSide + (std::clamp(cb, 0, 255) >> 2);
+  const int sum = std::max(1, b + g + r);
+  const int red = std::clamp(128 * r / sum - 32, 0, SkinModel::kSide - 1);
+  const int green = std::clamp(128 * g / sum - 16, 0, SkinModel::kSide - 1);
+  return red * SkinModel::kSide + green;
 }
 
-// The wide gate of skin (after Chai and Ngan 1999, opened for red lamps), and not nearly black.
-bool MayBeSkin(int bin, int b, int g, int r) {
-  const int cr = (bin / SkinModel::kSide) * 4, cb = (bin % SkinModel::kSide) * 4;
-  return cr >= 132 && cr <= 184 && cb >= 72 && cb <= 128 && b + g + r > 75;
+// The wide gate of skin in shares of red and green (after Soriano et al. 2003), not nearly black.
+bool MayBeSkin(int b, int g, int r) {
+  const double sum = std::max(1, b + g + r), red = r / sum, green = g / sum;
+  return sum > 75 && red > 0.35 && red < 0.62 && green > 0.2 && green < 0.37 && r > g;
 }
 
 }  // namespace
@@ -43,8 +45,9 @@ SkinModel LearnSkin(const cv::Mat& bgr, const MarkerColour& caps,
       if (distance > 16 * cap_radius_px) {
         far[bin] += 1;
         total_far += 1;
-      } else if (distance < 3 * cap_radius_px && caps.likelihood[MarkerColour::Index(pixel)] < 64 &&
-                 MayBeSkin(bin, pixel[0], pixel[1], pixel[2])) {
+      } else if (distance < 2.5 * cap_radius_px &&
+                 caps.likelihood[MarkerColour::Index(pixel)] < 64 &&
+                 MayBeSkin(pixel[0], pixel[1], pixel[2])) {
         near[bin] += 1;
         total_near += 1;
       }
@@ -108,7 +111,6 @@ void SegmentHand(const cv::Mat& bgr, const SkinModel& skin, const MarkerColour& 
     }
   }
   const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_ELLIPSE, {3, 3});
-  cv::morphologyEx(hand.mask, hand.mask, cv::MORPH_CLOSE, kernel);
   cv::morphologyEx(hand.mask, hand.mask, cv::MORPH_OPEN, kernel);
   // Keep what touches a cap.
   cv::Mat labels;

@@ -13,14 +13,14 @@
 
 namespace springgrasp {
 
-// Likelihood 0..255 of skin over Cr and Cb in steps of 4; brightness is left out.
+// Likelihood 0..255 of skin over the shares of red and green; brightness is left out.
 struct SkinModel {
   static constexpr int kSide = 64;
   std::array<std::uint8_t, kSide* kSide> likelihood = {};
   std::uint8_t Of(std::uint8_t b, std::uint8_t g, std::uint8_t r) const;
 };
 
-// Skin among the pixels within three cap radii of the caps (a wide gate on Cr and Cb says which),
+// Skin among the pixels within 2.5 cap radii of the caps (a wide gate says which),
 // likelihood against the pixels farther than sixteen.
 SkinModel LearnSkin(const cv::Mat& bgr, const MarkerColour& caps,
                     const std::vector<Eigen::Vector2d>& cap_px, double cap_radius_px);
@@ -40,8 +40,7 @@ struct HandMask {
   Eigen::Vector2d ToPixel(const Eigen::Vector2d& entry) const;
 };
 
-// Skin and caps within `region`, only the parts connected to a cap (gaps up to two entries
-// bridged). Reuses the memory of `hand`.
+// Skin and caps within `region`, only the parts connected to a cap. Reuses the memory of `hand`.
 void SegmentHand(const cv::Mat& bgr, const SkinModel& skin, const MarkerColour& caps,
                  const std::vector<Eigen::Vector2d>& cap_px, double cap_radius_px,
                  const cv::Rect& region, int step, HandMask& hand);
