@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "grasp/spring_integrator.h"
 #include "motion/minimum_jerk.h"
@@ -105,11 +107,16 @@ double HoldingForce(const FingerRun& run) {
   return std::max(run.gains.holding, 1.5 * largest);
 }
 
-std::optional<FingerMotion> SimulateFingers(const FingerRun& run,
-                                            const std::vector<double>& acceleration, double dt) {
+namespace {
+
+// One run under a given holding force.
+std::optional<FingerMotion> SimulateHeld(const FingerRun& run,
+                                         const std::vector<double>& acceleration, double dt,
+                                         double hold) {
   const std::vector<int> fingers = {0, 1, 2, 3, 4};
   const SpringSystem system = MakeSystem(run, fingers);
-  const CentralForce force = MakeRunForce(run, acceleration, dt);
+  CentralForce force = MakeRunForce(run, acceleration, dt);
+  force.hold = hold;
   const double closes = run.t_switch + run.gains.delay;
   const double ramp = std::max(run.T - closes, kBlend * run.T);
   ForceProfile profile;
@@ -149,6 +156,40 @@ std::optional<FingerMotion> SimulateFingers(const FingerRun& run,
     motion.f_cen.push_back(profile.f(times[n]));
   }
   return motion;
+}
+
+// Largest distance of an involved tip from its contact from T on, m.
+double ContactError(const FingerRun& run, const FingerMotion& motion, double dt) {
+  const auto n =
+      std::min(static_cast<std::size_t>(std::lround(run.T / dt)), motion.p_HF.size() - 1);
+  double error = 0;
+  for (std::size_t k = n; k < motion.p_HF.size(); ++k) {
+    for (int i = 0; i < kNumFingers; ++i) {
+      if (run.involved[i]) error = std::max(error, (motion.p_HF[k][i] - run.p_HC[i]).norm());
+    }
+  }
+  return error;
+}
+
+}  // namespace
+
+std::optional<FingerMotion> SimulateFingers(const FingerRun& run,
+                                            const std::vector<double>& acceleration, double dt) {
+  constexpr double kLanded = 0.001;  // m
+  constexpr int kTries = 9;
+  double hold = HoldingForce(run);
+  std::optional<FingerMotion> best;
+  double best_error = std::numeric_limits<double>::infinity();
+  // A hand that is slow against its reach is late at the contacts: it is closed harder.
+  for (int n = 0; n < kTries && best_error > kLanded; ++n, hold *= 1.6) {
+    auto motion = SimulateHeld(run, acceleration, dt, hold);
+    if (!motion) break;
+    const double error = ContactError(run, *motion, dt);
+    if (error >= best_error) continue;
+    best_error = error;
+    best = std::move(motion);
+  }
+  return best;
 }
 
 }  // namespace springgrasp

@@ -54,7 +54,9 @@ struct FingerMotion {
 };
 
 // Fingertips in H at even steps of `dt`. After the switch the central force never falls below a
-// ramp that rises to the holding force at T. Nothing if the springs run away.
+// ramp that rises to the holding force at T; that force is raised where the tips would not have
+// landed at T (spring-model note, section 5: slower hands miss the contact). Nothing if the springs
+// run away.
 std::optional<FingerMotion> SimulateFingers(const FingerRun& run,
                                             const std::vector<double>& acceleration, double dt);
 

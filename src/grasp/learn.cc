@@ -293,6 +293,7 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   fit.lead = reach.lead;
   fit.dt = track.dt;
   fit.observed = track.observed;
+  fit.noise = track.tip_noise;
   fit.human = options.profile == "human";
   // Eq. 7 cannot see a speed peak that lies outside the recording or at its very edge.
   const double measured = segment.contact - segment.begin;
@@ -309,8 +310,8 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
         {i, j, gains.k[e], fit.run.rest_lengths[e], gains.d[e], fitted.standard_errors[e]});
   }
   for (int i = 0; i < kNumFingers; ++i) {
-    grasp.offset[i] = grasp.involved[i] ? Vector3d(fitted.p_HF[i] - p_HC[i]) : fitted.p_HF[i];
-    grasp.velocity[i] = fitted.v_HF[i];
+    grasp.offset[i] = grasp.involved[i] ? Vector3d(start[i] - p_HC[i]) : start[i];
+    grasp.velocity[i].setZero();
   }
   grasp.reach_gain = fitted.gains.reach;
   grasp.delay = fitted.gains.delay;

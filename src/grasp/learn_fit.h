@@ -19,6 +19,7 @@ struct FitProblem {
   std::vector<PerFinger<std::optional<Eigen::Vector3d>>> sample_p_HF;
   double lead = 0;  // s, completed before the recording: the fingers rest
   PerFinger<bool> observed = {};
+  double noise = 0;   // deviation of a measured coordinate, m
   bool human = true;  // fit delay and closing gain
   bool fit_switch = false;
 };
@@ -26,7 +27,6 @@ struct FitProblem {
 struct FitResult {
   DimensionlessGains gains;
   double t_switch = 0.5;                // s
-  Fingertips p_HF, v_HF;                // fitted start
   std::vector<double> standard_errors;  // of k, per edge, N/m; 0 where not estimated
   double condition_number = 0;          // of the scaled regression (Eq. 8)
   // Of what these values generate, over the measured samples.

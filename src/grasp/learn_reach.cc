@@ -10,14 +10,80 @@
 namespace springgrasp {
 
 using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
 using Eigen::VectorXd;
+
+namespace {
+
+// Velocity and acceleration at the ends decide how a cut movement is completed, and are what a
+// recording knows worst. They become those of a straight line through the velocities of the first
+// and last tenth of a second, the acceleration no larger than a minimum-jerk movement of the same
+// duration and peak speed has.
+void CalmEnds(MotionSamples& samples, double dt) {
+  const Eigen::Index n = samples.size();
+  const auto m = std::min<Eigen::Index>(n, static_cast<Eigen::Index>(0.12 / dt) + 2);
+  const double duration = static_cast<double>(n - 1) * dt;
+  for (const Eigen::Index end : {Eigen::Index{0}, n - 1}) {
+    const Eigen::Index first = end == 0 ? 0 : n - m;
+    const MatrixXd v = samples.v.middleRows(first, m);
+    const VectorXd t = samples.t.segment(first, m).array() - samples.t.segment(first, m).mean();
+    RowVectorXd slope = t.transpose() * v / t.squaredNorm();
+    const RowVectorXd value = v.colwise().mean() + (end == 0 ? t[0] : t[m - 1]) * slope;
+    constexpr double kPeaks = 5.7735 / 1.875;  // peak acceleration / (peak speed / duration)
+    const double largest = kPeaks * value.head(3).norm() / duration;
+    if (slope.head(3).norm() > largest) slope *= largest / slope.head(3).norm();
+    samples.v.row(end) = value;
+    samples.a.row(end) = slope;
+  }
+}
+
+MotionSamples Rows(const MotionSamples& samples, Eigen::Index first, Eigen::Index count) {
+  return {samples.t.segment(first, count), samples.x.middleRows(first, count),
+          samples.v.middleRows(first, count), samples.a.middleRows(first, count)};
+}
+
+// Completed to rest at both ends. How long the missing parts last is judged from the nearest 0.3 s:
+// the slow homing in at the end of a reach says nothing about how it began.
+CompletedMotion Complete(const MotionSamples& samples, double dt) {
+  const double peak = samples.v.leftCols(3).rowwise().norm().maxCoeff();
+  const Eigen::Index n = samples.size();
+  const auto window = std::min<Eigen::Index>(n, static_cast<Eigen::Index>(0.3 / dt) + 1);
+  const auto moves = [&](Eigen::Index row) {
+    return samples.v.row(row).head(3).norm() > 0.05 * peak;  // movement time: 5 % of peak speed
+  };
+  CompletedMotion begin, end;
+  if (moves(0)) begin = CompleteToRest(Rows(samples, 0, window));
+  if (moves(n - 1)) end = CompleteToRest(Rows(samples, n - window, window));
+  const auto before = static_cast<Eigen::Index>(std::lround(begin.begin / dt));
+  const auto after = static_cast<Eigen::Index>(std::lround(end.end / dt));
+
+  CompletedMotion out;
+  out.begin = static_cast<double>(before) * dt;
+  out.end = static_cast<double>(after) * dt;
+  const Eigen::Index total = before + n + after;
+  out.samples.t = VectorXd::LinSpaced(total, 0, static_cast<double>(total - 1) * dt);
+  const auto join = [&](MatrixXd MotionSamples::*part) {
+    MatrixXd& rows = out.samples.*part;
+    rows.resize(total, samples.dimension());
+    if (before > 0) rows.topRows(before) = (begin.samples.*part).topRows(before);
+    rows.middleRows(before, n) = samples.*part;
+    if (after > 0) rows.bottomRows(after) = (end.samples.*part).bottomRows(after);
+  };
+  join(&MotionSamples::x);
+  join(&MotionSamples::v);
+  join(&MotionSamples::a);
+  return out;
+}
+
+}  // namespace
 
 LearnedReach LearnReach(const std::vector<Pose>& X_OG, double dt, int basis_functions) {
   const Eigen::Quaterniond R_goal(X_OG.back().linear());
   const auto count = static_cast<Eigen::Index>(X_OG.size());
   const VectorXd t = VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1) * dt);
-  const MotionSamples measured = DifferentiateSamples(t, PoseCoordinates(X_OG, R_goal));
-  const CompletedMotion completed = CompleteToRest(measured);
+  MotionSamples measured = DifferentiateSamples(t, PoseCoordinates(X_OG, R_goal));
+  CalmEnds(measured, dt);
+  const CompletedMotion completed = Complete(measured, dt);
 
   LearnedReach reach;
   reach.lead = completed.begin;
