@@ -266,8 +266,8 @@ void JudgePosture(const RobotHand& hand, const ContactRequest& request, ContactP
     (f == kThumb ? n_thumb : n_others) += n;
   }
   if (power) {
-    Eigen::Vector3d n;
-    if (SignedDistance(request.shape, X_OH * hand.p_HPalm, &n) < kPalmTouching) n_others += n;
+    const FingerTouch palm = TouchOf(hand, -1, X_OH, request.shape, X_HB);
+    if (palm.proximal < kPalmTouching) n_others += palm.n_proximal;
   }
   const double cosine = n_thumb.normalized().dot(n_others.normalized());
   posture.opposition_deg = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;

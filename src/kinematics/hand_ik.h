@@ -24,7 +24,7 @@ struct HandIkOptions {
   double tip_deviation = 0.0005;   // m
   double rest_deviation = 4;       // rad
   double abduction_deviation = 1;  // rad; abduction stays nearer to rest than flexion
-  double step_deviation = 0.1;     // rad, from one instant to the next
+  double step_deviation = 0.05;    // rad, from one instant to the next
   double coupling_deviation = 2;   // rad
   int max_iterations = 40;
   // Pose variant: how far the wrist may be from its prior.

@@ -13,7 +13,8 @@ namespace {
 constexpr PerFinger<bool> kAllFingers = {true, true, true, true, true};
 constexpr int kOpenings = 10;        // tried degrees of opening
 constexpr double kSmoothing = 0.02;  // s, half width of the final moving average
-constexpr double kHold = 0.05;       // s, an opening is kept this long before and after
+constexpr double kHold = 0.05;       // s, an opening is kept this long after its need
+constexpr double kAhead = 0.2;       // of T, an opening is finished this much before
 
 double SmoothStep(double s) {
   s = std::clamp(s, 0.0, 1.0);
@@ -41,42 +42,56 @@ void Smooth(std::vector<T>& series, int half) {
   }
 }
 
-// How far the hand must open (0..1 towards `q_open`) at each sample to stay clear.
+// How far one finger must open (0..1 towards `q_open`) at each sample to stay clear. What even the
+// open finger does not have is not asked.
 std::vector<double> Openings(const RobotHand& robot, const HandMotionRequest& request,
                              const HandMotionOptions& options, const Eigen::VectorXd& q_open,
-                             const std::vector<Eigen::VectorXd>& q, double t_contact) {
+                             const std::vector<Eigen::VectorXd>& q, int finger, double t_contact) {
   const int n = static_cast<int>(q.size());
+  PerFinger<bool> only = {};
+  only[finger] = true;
   std::vector<double> needed(n, 0.0);
   std::vector<Pose> X_HB;
+  const auto clearance = [&](int k, double opening) {
+    ForwardKinematics(robot.tree, q[k] + opening * (q_open - q[k]), X_HB);
+    return HandDistance(robot, X_HB, request.X_OH[k], request.shape, only, false);
+  };
   for (int k = 0; k < n; ++k) {
     const double left = (t_contact - request.dt * k) / (options.closing * request.T);
     if (left <= 0) break;
     const double wanted = options.clearance * std::min(1.0, left);
-    double best = -std::numeric_limits<double>::infinity();
-    for (int i = 0; i <= kOpenings; ++i) {
+    double best = clearance(k, 0);
+    for (int i = 1; i <= kOpenings && best < wanted; ++i) {
       const double opening = static_cast<double>(i) / kOpenings;
-      const double clearance =
-          Clearance(robot, request.shape, request.X_OH[k], q[k] + opening * (q_open - q[k]), X_HB);
-      if (clearance > best + 1e-6) {
-        best = clearance;
-        needed[k] = opening;
-      }
-      if (clearance >= wanted) break;
+      const double found = clearance(k, opening);
+      if (found < best + 1e-5) continue;
+      best = found;
+      needed[k] = opening;
     }
   }
-  // Held around each need, then smoothed, so that the fingers do not flutter.
-  const int hold = std::max(1, static_cast<int>(kHold / request.dt));
+  // Open well before the need, since the way open leads through where the object will be; held as
+  // far as the average reaches, so that it stays enough.
+  const int half = std::max(1, static_cast<int>(kHold / 2 / request.dt));
+  const int ahead = 2 * half + static_cast<int>(kAhead * request.T / request.dt);
   std::vector<double> held(n, 0.0);
   for (int k = 0; k < n; ++k) {
-    for (int i = std::max(0, k - hold); i <= std::min(n - 1, k + hold); ++i) {
+    for (int i = std::max(0, k - 2 * half); i <= std::min(n - 1, k + ahead); ++i) {
       held[k] = std::max(held[k], needed[i]);
     }
   }
-  Smooth(held, hold / 2 + 1);
+  Smooth(held, half);
   for (int k = 0; k < n; ++k) {
     held[k] *= SmoothStep((t_contact - request.dt * k) / (0.5 * options.closing * request.T));
   }
   return held;
+}
+
+// No joint faster than `step` per sample: what comes later is kept, what was before gives way.
+void LimitSteps(double step, std::vector<Eigen::VectorXd>& q) {
+  for (std::size_t k = q.size() - 1; k-- > 0;) {
+    q[k] = q[k].cwiseMin((q[k + 1].array() + step).matrix());
+    q[k] = q[k].cwiseMax((q[k + 1].array() - step).matrix());
+  }
 }
 
 }  // namespace
@@ -142,11 +157,20 @@ HandMotionResult MapHandMotion(const HumanHand& human, const RobotHand& robot,
   }
   result.mapping_error = count > 0 ? error / count : 0;
 
+  constexpr double kFully = 1;  // m
   const Eigen::VectorXd q_open =
-      OpenedPosture(robot, posture, request.shape, request.involved, 1.5 * options.clearance);
-  const std::vector<double> opening =
-      Openings(robot, request, options, q_open, result.q, t_contact);
-  for (int k = 0; k < n; ++k) result.q[k] += opening[k] * (q_open - result.q[k]);
+      OpenedPosture(robot, posture, request.shape, request.involved, kFully);
+  const std::vector<Eigen::VectorXd> mapped = result.q;
+  for (int f = 0; f < kNumFingers; ++f) {
+    const std::vector<double> opening =
+        Openings(robot, request, options, q_open, mapped, f, t_contact);
+    for (int k = 0; k < n; ++k) {
+      for (const int j : {robot.fingers[f].j0, robot.fingers[f].j1}) {
+        result.q[k][j] += opening[k] * (q_open[j] - result.q[k][j]);
+      }
+    }
+  }
+  LimitSteps(options.max_speed * request.dt, result.q);
   Smooth(result.q, half);
   for (Eigen::VectorXd& q : result.q) q = q.cwiseMax(robot.tree.lower).cwiseMin(robot.tree.upper);
 

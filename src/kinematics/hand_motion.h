@@ -30,6 +30,7 @@ struct HandMotionOptions {
   double clearance = 0.010;      // m, of the open hand from the object before it closes
   double lambda_contact = 1000;  // position weight at contact (Eq. 14: 1)
   double closing = 0.25;         // last part of T in which the clearance may fall to zero
+  double max_speed = 8;          // rad/s, of a finger joint (3 degrees in 5 ms would be 10.5)
   MappingOptions mapping;
 };
 

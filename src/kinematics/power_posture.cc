@@ -11,14 +11,16 @@
 namespace springgrasp {
 namespace {
 
-constexpr double kTouch = 0.0002;    // m
-constexpr double kCoarse = 0.06;     // rad, step of closing
-constexpr int kBends = 14;           // tried angles of the distal joint
-constexpr double kPassing = 0.02;    // m, a phalanx farther than this takes no part
-constexpr double kNear = 0.0025;     // m, touches once the hand presses
-constexpr double kPalmNear = 0.005;  // m, the palm carries once the fingers pull
-constexpr double kHandWidth = 0.09;  // m, an object longer than this lies under all fingers
-constexpr int kSamples = 6;          // along a phalanx
+constexpr double kTouch = 0.0002;     // m
+constexpr double kCoarse = 0.06;      // rad, step of closing
+constexpr int kBends = 14;            // tried angles of the distal joint
+constexpr double kPassing = 0.02;     // m, a phalanx farther than this takes no part
+constexpr double kNear = 0.0025;      // m, touches once the hand presses
+constexpr double kPalmNear = 0.005;   // m, the palm carries once the fingers pull
+constexpr double kHandWidth = 0.09;   // m, an object longer than this lies under all fingers
+constexpr double kThumbRoom = 0.004;  // m
+constexpr int kPalm = -1;             // instead of a finger
+constexpr int kSamples = 6;           // along a phalanx
 
 // Of the palm and the open fingers, which an object seats against; the thumb stands aside.
 double SeatDistance(const RobotHand& hand, const std::vector<Pose>& X_HB, const Pose& X_OH,
@@ -155,13 +157,17 @@ Candidate TrySeat(const RobotHand& hand, const ContactRequest& request,
   std::vector<Pose> X_HB;
   ForwardKinematics(hand.tree, q_open, X_HB);
   Eigen::Vector3d others = Eigen::Vector3d::Zero();
-  // The palm plate's middle must carry, not only its edge.
-  Eigen::Vector3d n_palm;
-  const double palm_gap = SignedDistance(shape, X_OH * hand.p_HPalm, &n_palm);
-  candidate.cost += 30 * std::max(0.0, palm_gap - options.palm_gap);
-  if (palm_gap < kPalmNear) {
-    others += n_palm;
-    add(n_palm);
+  // On its way in the object passes the open thumb.
+  const FingerTouch passing = TouchOf(hand, kThumb, X_OH, shape, X_HB);
+  candidate.cost += 80 * std::max(0.0, kThumbRoom - std::min(passing.proximal, passing.distal));
+  // The palm must carry, best by its middle.
+  const FingerTouch palm = TouchOf(hand, kPalm, X_OH, shape, X_HB);
+  const double middle_gap = SignedDistance(shape, X_OH * hand.p_HPalm);
+  candidate.cost += 100 * std::max(0.0, palm.proximal - options.palm_gap - 0.0005);
+  candidate.cost += 10 * std::max(0.0, middle_gap - options.palm_gap);
+  if (palm.proximal < kPalmNear) {
+    others += palm.n_proximal;
+    add(palm.n_proximal);
   }
   const auto account = [&](int f, const FingerTouch& touch) {
     const double gap = std::min(touch.proximal, touch.distal);

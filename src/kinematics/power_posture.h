@@ -18,6 +18,7 @@ struct FingerTouch {
   Eigen::Vector3d n_proximal = Eigen::Vector3d::UnitX();  // outward normals of the shape in O at
   Eigen::Vector3d n_distal = Eigen::Vector3d::UnitX();    // the nearest points
 };
+// `finger` -1: the palm, as `proximal`.
 FingerTouch TouchOf(const RobotHand& hand, int finger, const Pose& X_OH, const Shape& shape,
                     const std::vector<Pose>& X_HB);
 

@@ -94,6 +94,7 @@ std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRe
   goal.score = std::min(margin, kEnoughMargin);
   goal.score -= 0.03 * std::abs(motion.tilt) / 0.35 + 0.03 * std::abs(motion.roll) / 0.35 +
                 0.01 * std::abs(motion.yaw) / std::numbers::pi;
+  if (request.q_start) goal.score -= 0.05 * (goal.q - *request.q_start).cwiseAbs().maxCoeff();
   goal.score -= 10 * std::max(0.0, options.clearance - std::min(above, forearm));
   return goal;
 }
@@ -140,6 +141,9 @@ ArmPath JointPath(const Arm& arm, const std::vector<Pose>& X_WH, const Eigen::Ve
 bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request,
               const ReachOptions& options, const Goal& goal, ReachPlan& plan) {
   plan.X_OF = goal.motion.X_OF;
+  plan.yaw = goal.motion.yaw;
+  plan.tilt = goal.motion.tilt;
+  plan.roll = goal.motion.roll;
   plan.X_WH = request.path(goal.motion.X_OF);
   ThrowUnless(!plan.X_WH.empty(), "a reach needs a path of hand poses, found none");
   plan.via_raise =
@@ -184,12 +188,18 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
           options.shake * envelope * std::sin(2 * std::numbers::pi * options.shake_frequency * t);
       X_shake.push_back(Moved(X_lift.back(), s * Eigen::Vector3d::Unit(axis)));
     }
-    const ArmPath shake = TrackArmPath(arm, X_shake, lift.q.back(), kBigStep);
-    if (!shake.complete) {
-      plan.reason = "shaking: " + shake.reason;
-      return false;
+    // Every pose from the same posture, so that the arm comes back to it.
+    ArmIkOptions ik;
+    ik.limit_weight = 0;
+    plan.shake[axis].clear();
+    for (const Pose& X : X_shake) {
+      const auto q = SolveArmIk(arm, X, lift.q.back(), ik);
+      if (!q) {
+        plan.reason = "the lifted arm cannot be shaken as far as asked";
+        return false;
+      }
+      plan.shake[axis].push_back(*q);
     }
-    plan.shake[axis] = shake.q;
   }
   plan.arm = path.q;
   plan.lift = lift.q;
@@ -210,12 +220,9 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
   return true;
 }
 
-}  // namespace
-
-ReachPlan PlanReach(const Arm& arm, const RobotHand& hand, const ReachRequest& request,
-                    const ReachOptions& options) {
-  ThrowUnless(!request.q_hand.empty() && request.path,
-              "a reach needs the hand's joints and a path of hand poses");
+// PlanReach within one range of tilts.
+ReachPlan PlanWithin(const Arm& arm, const RobotHand& hand, const ReachRequest& request,
+                     const ReachOptions& options) {
   ReachPlan plan;
   std::vector<Goal> goals;
   for (const FreeMotion& motion : FreeMotions(request, options)) {
@@ -243,6 +250,20 @@ ReachPlan PlanReach(const Arm& arm, const RobotHand& hand, const ReachRequest& r
     if (PlanPath(arm, hand, request, options, goals[index], plan)) return plan;
   }
   return plan;
+}
+
+}  // namespace
+
+ReachPlan PlanReach(const Arm& arm, const RobotHand& hand, const ReachRequest& request,
+                    const ReachOptions& options) {
+  ThrowUnless(!request.q_hand.empty() && request.path,
+              "a reach needs the hand's joints and a path of hand poses");
+  ReachPlan plan = PlanWithin(arm, hand, request, options);
+  const bool may_tilt = request.tilt_free || request.shape.kind == Shape::Kind::kSphere;
+  if (plan.reachable || !may_tilt || options.last_resort_tilt <= options.max_tilt) return plan;
+  ReachOptions wider = options;
+  wider.max_tilt = options.last_resort_tilt;
+  return PlanWithin(arm, hand, request, wider);
 }
 
 }  // namespace springgrasp

@@ -37,23 +37,26 @@ struct ReachRequest {
 struct ReachOptions {
   double yaw_step = 0.17453292519943295;  // rad, 10 degrees
   double max_tilt = 0.3490658503988659;   // rad, 20 degrees
-  double clearance = 0.010;               // m, of hand and forearm above the table
-  double lift = 0.15;                     // m
-  double shake = 0.020;                   // m, along each axis
-  double shake_frequency = 2;             // Hz
-  double shake_duration = 1;              // s, per axis
-  double lift_duration = 1.5;             // s
-  int path_candidates = 12;               // how many goals get a whole path
-  double max_joint_speed = 2.5;           // rad/s
+  // Only where nothing within max_tilt can be reached; the contacts stay as good.
+  double last_resort_tilt = 1.0471975511965976;  // rad, 60 degrees
+  double clearance = 0.010;                      // m, of hand and forearm above the table
+  double lift = 0.15;                            // m
+  double shake = 0.020;                          // m, along each axis
+  double shake_frequency = 2;                    // Hz
+  double shake_duration = 1;                     // s, per axis
+  double lift_duration = 1.5;                    // s
+  int path_candidates = 12;                      // how many goals get a whole path
+  double max_joint_speed = 4;                    // rad/s
 };
 
 struct ReachPlan {
   bool reachable = false;
-  std::string reason;                 // one line when not reachable
-  Pose X_OF = Pose::Identity();       // the choice
-  std::vector<Pose> X_WH;             // hand path with via height, at dt
-  std::vector<Eigen::VectorXd> arm;   // joint angles, rad, same samples
-  std::vector<Eigen::VectorXd> lift;  // from the end of the reach straight up, at dt
+  std::string reason;                  // one line when not reachable
+  Pose X_OF = Pose::Identity();        // the choice ...
+  double yaw = 0, tilt = 0, roll = 0;  // ... by its angles, rad
+  std::vector<Pose> X_WH;              // hand path with via height, at dt
+  std::vector<Eigen::VectorXd> arm;    // joint angles, rad, same samples
+  std::vector<Eigen::VectorXd> lift;   // from the end of the reach straight up, at dt
   std::array<std::vector<Eigen::VectorXd>, 3> shake;  // about the lifted pose, along W's axes
   double limit_margin = 0;        // smallest over the path, 0..1 (see LimitMargin)
   double table_clearance = 0;     // m, smallest of hand and forearm over the path

@@ -1,0 +1,136 @@
+#include "kinematics/reach_plan.h"
+
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "posture_requests.h"
+#include "test_arm.h"
+
+namespace springgrasp {
+namespace {
+
+// A grasp of an object that stands on a table, reached from the arm's home posture in 1.5 s.
+ReachRequest MakeReach(const std::string& type, const std::string& shape,
+                       const Eigen::Vector3d& wrist_O, const Eigen::Vector2d& place, double table) {
+  const ContactPosture posture =
+      SolveContactPosture(TestRobotHand(), MakeRequest(type, ParseShape(shape), wrist_O));
+  ReachRequest request;
+  request.shape = ParseShape(shape);
+  request.X_WO.translation() << place,
+      table + 0.5 * request.shape.size.z() + (type == "pinch" ? 0.02 : 0);
+  request.X_HO = posture.X_HO;
+  request.X_HG = posture.X_HG;
+  request.tilt_free = type != "power";
+  request.table_height = table;
+  request.table_edge = 0.41;
+  request.T = 1.5;
+  request.q_hand.assign(450, posture.q);
+  request.q_start = HomePosture(TestArm());
+  const Pose X_WH_start = HandPose(TestArm(), *request.q_start);
+  const Pose X_WO = request.X_WO, X_HO = request.X_HO;
+  request.path = [=](const Pose& X_OF) {
+    const Pose X_WH_goal = X_WO * X_OF * X_HO.inverse();
+    const Eigen::Vector3d turn =
+        LogRotation(Eigen::Quaterniond(X_WH_start.linear().transpose() * X_WH_goal.linear()));
+    std::vector<Pose> path;
+    for (int k = 0; k < 450; ++k) {
+      const double u = std::min(1.0, k / 300.0), s = u * u * u * (10 + u * (6 * u - 15));
+      path.push_back(MakePose(
+          X_WH_start.translation() + s * (X_WH_goal.translation() - X_WH_start.translation()),
+          Eigen::Quaterniond(X_WH_start.linear()) * ExpRotation(s * turn)));
+    }
+    return path;
+  };
+  return request;
+}
+
+void ExpectSound(const ReachRequest& request, const ReachPlan& plan) {
+  ASSERT_TRUE(plan.reachable) << plan.reason;
+  const Arm& arm = TestArm();
+  ASSERT_EQ(plan.arm.size(), plan.X_WH.size());
+  EXPECT_LT((plan.arm.front() - *request.q_start).norm(), 0.01) << "begins where the arm stands";
+  for (std::size_t k = 0; k < plan.arm.size(); ++k) {
+    const Pose X = HandPose(arm, plan.arm[k]);
+    EXPECT_LT((X.translation() - plan.X_WH[k].translation()).norm(), 2e-4);
+    const Eigen::VectorXd step = plan.arm[k] - plan.arm[k > 0 ? k - 1 : 0];
+    EXPECT_LT(step.cwiseAbs().maxCoeff(), 4 * 0.005 + 1e-9);
+  }
+  // The object is where it was believed to be, up to what the shape leaves free.
+  const Pose X_WO = plan.X_WH.back() * request.X_HO;
+  EXPECT_LT((X_WO.matrix() - (request.X_WO * plan.X_OF).matrix()).norm(), 1e-3);
+  const double lifted =
+      HandPose(arm, plan.lift.back()).translation().z() - plan.X_WH.back().translation().z();
+  EXPECT_NEAR(lifted, 0.15, 1e-3);
+  for (int axis = 0; axis < 3; ++axis) {
+    double most = 0;
+    for (const Eigen::VectorXd& q : plan.shake[axis]) {
+      most = std::max(most, std::abs((HandPose(arm, q).translation() -
+                                      HandPose(arm, plan.lift.back()).translation())[axis]));
+    }
+    EXPECT_NEAR(most, 0.02, 0.002);
+    EXPECT_LT((plan.shake[axis].back() - plan.lift.back()).norm(), 1e-3);
+  }
+  EXPECT_GT(plan.limit_margin, 0);
+}
+
+TEST(ReachPlanTest, SideGraspsOfCylindersInTheReachWindow) {
+  for (const Eigen::Vector2d& place : {Eigen::Vector2d(0.35, 0.5), Eigen::Vector2d(0.4, 0.45)}) {
+    const ReachRequest request = MakeReach("power", "cylinder:0.05x0.18", {0, -1, 0}, place, 0.95);
+    const ReachPlan plan = PlanReach(TestArm(), TestRobotHand(), request);
+    ExpectSound(request, plan);
+    EXPECT_GT(plan.table_clearance, 0.005);
+  }
+}
+
+TEST(ReachPlanTest, PinchesOfABallInTheReachWindow) {
+  for (const Eigen::Vector2d& place : {Eigen::Vector2d(0.35, 0.45), Eigen::Vector2d(0.42, 0.42)}) {
+    const ReachRequest request = MakeReach("pinch", "sphere:0.04", {0, -0.6, 0.8}, place, 0.85);
+    ExpectSound(request, PlanReach(TestArm(), TestRobotHand(), request));
+  }
+}
+
+TEST(ReachPlanTest, AnObjectOutOfReachIsAValueWithAReason) {
+  const ReachRequest request =
+      MakeReach("power", "cylinder:0.05x0.18", {0, -1, 0}, {0.3, 1.2}, 0.95);
+  const ReachPlan plan = PlanReach(TestArm(), TestRobotHand(), request);
+  EXPECT_FALSE(plan.reachable);
+  EXPECT_THAT(plan.reason, ::testing::HasSubstr("no arm posture"));
+}
+
+TEST(FreeMotionsTest, KeepTheContactsOnTheObject) {
+  for (const char* text : {"sphere:0.04", "cylinder:0.05x0.1", "box:0.04x0.04x0.06"}) {
+    const ContactRequest contact = MakeRequest("pinch", ParseShape(text), {0, -1, 0});
+    const ContactPosture posture = SolveContactPosture(TestRobotHand(), contact);
+    ReachRequest request;
+    request.shape = contact.shape;
+    request.X_HO = posture.X_HO;
+    request.X_HG = posture.X_HG;
+    const std::vector<FreeMotion> motions = FreeMotions(request);
+    EXPECT_TRUE(motions.front().X_OF.isApprox(Pose::Identity()));
+    for (const FreeMotion& motion : motions) {
+      for (const int f : {kThumb, kIndex}) {
+        const double gap = SignedDistance(contact.shape, motion.X_OF * posture.p_OC[f]) -
+                           TestRobotHand().tip_radius;
+        EXPECT_LT(std::abs(gap), 0.001) << text;
+      }
+    }
+  }
+}
+
+TEST(RaisePathTest, LiftsTheMiddleAndKeepsTheEnds) {
+  const RobotHand& hand = TestRobotHand();
+  const std::vector<Eigen::VectorXd> q(101, hand.open);
+  std::vector<Pose> path(101, HandPose(TestArm(), HomePosture(TestArm())));
+  for (int k = 0; k <= 100; ++k) path[k].translation().y() += 0.002 * k;
+  const std::vector<Pose> before = path;
+  const double lowest = HandAboveTable(hand, path[50], q[50], 0, -1e9);
+  const double raise = RaisePath(hand, q, lowest + 0.02, -1e9, 0.01, 100, path);
+  EXPECT_GT(raise, 0.029);
+  EXPECT_LT((path.front().matrix() - before.front().matrix()).norm(), 1e-12);
+  EXPECT_LT((path.back().matrix() - before.back().matrix()).norm(), 1e-12);
+  EXPECT_GE(HandAboveTable(hand, path[50], q[50], lowest + 0.02, -1e9), 0.0099);
+}
+
+}  // namespace
+}  // namespace springgrasp
