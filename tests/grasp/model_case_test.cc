@@ -92,6 +92,39 @@ TEST(ModelCase, ComparingWithItselfGivesNoErrorAndAChangeIsFound) {
   EXPECT_NEAR(check.worst_ratio, 5.0, 1e-3);
 }
 
+// Every number in turn, changed by a thousandth, must be noticed in its key.
+void ExpectEveryKeyCounts(Json& model_case, Json& part, const Json& computed,
+                          const std::vector<std::string>& keys) {
+  for (const std::string& key : keys) {
+    Json* value = &part[key];
+    while (value->is_array()) value = &value->back();
+    const Json before = *value;
+    *value = before.get<double>() * 1.001 + 1e-3;
+    const ModelCaseCheck check = CheckModelCase(model_case, computed, "changed");
+    EXPECT_FALSE(check.passed) << key;
+    EXPECT_EQ(check.worst_key, key);
+    *value = before;
+  }
+}
+
+TEST(ModelCase, EveryExpectedKeyIsCompared) {
+  const fs::path folder = fs::path(SPRINGGRASP_SHARED_DIR) / "golden";
+  if (!fs::is_directory(folder)) GTEST_SKIP() << "no reference files: " << folder << " is absent";
+  const std::vector<std::pair<std::string, std::vector<std::string>>> keys = {
+      {"springs_2d_free.json", {"p", "v"}},
+      {"dmp_rollout.json", {"x", "v", "a"}},
+      {"dmp_learn.json", {"weights"}},
+      {"fcen_skewed.json", {"t_switch", "f"}},
+      {"kest_2d_fan7.json", {"k", "first_frame_rows_X", "first_frame_rhs", "singular_values"}},
+      {"rhs_3d_object.json", {"x", "xdot", "xc", "s", "u", "R", "acc"}}};
+  for (const auto& [file, names] : keys) {
+    Json model_case = ReadModelCase((folder / file).string());
+    const Json computed = EvaluateModelCase(model_case, file);
+    Json& expected = model_case["expected"];
+    ExpectEveryKeyCounts(model_case, expected.is_array() ? expected[3] : expected, computed, names);
+  }
+}
+
 TEST(ModelCase, MalformedCasesNameFileAndKey) {
   Json c = SmallCase();
   c["params"].erase("kc");
