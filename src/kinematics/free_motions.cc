@@ -51,7 +51,12 @@ std::vector<FreeMotion> FreeMotions(const ReachRequest& request, const ReachOpti
     yaws.push_back(kPi);
   }
   if (sphere) rolls = Around(kRoll, kRoll);
-  if (request.tilt_free || sphere) tilts = Around(kTiltStep, options.max_tilt);
+  // Tilting a sphere is a turn like any other; elsewhere the approach shall stay the demonstrated.
+  if (sphere) {
+    tilts = Around(2 * kTiltStep, options.last_resort_tilt);
+  } else if (request.tilt_free) {
+    tilts = Around(kTiltStep, options.max_tilt);
+  }
   std::vector<FreeMotion> motions;
   for (const double tilt : tilts) {
     for (const double roll : rolls) {

@@ -259,7 +259,7 @@ ReachPlan PlanReach(const Arm& arm, const RobotHand& hand, const ReachRequest& r
   ThrowUnless(!request.q_hand.empty() && request.path,
               "a reach needs the hand's joints and a path of hand poses");
   ReachPlan plan = PlanWithin(arm, hand, request, options);
-  const bool may_tilt = request.tilt_free || request.shape.kind == Shape::Kind::kSphere;
+  const bool may_tilt = request.tilt_free && request.shape.kind != Shape::Kind::kSphere;
   if (plan.reachable || !may_tilt || options.last_resort_tilt <= options.max_tilt) return plan;
   ReachOptions wider = options;
   wider.max_tilt = options.last_resort_tilt;

@@ -66,8 +66,8 @@ struct ReachPlan {
 
 // Motions F of the hand about O that leave the contacts as good as they are: sphere: turns about
 // the vertical and rolls about G's z; cylinder: turns about its axis; box: half turns about z
-// (quarter turns if square); each with tilts about the contact line within max_tilt where
-// `tilt_free`. The demonstrated one (identity) is first.
+// (quarter turns if square); each with tilts about the contact line: within max_tilt where
+// `tilt_free`, for spheres within last_resort_tilt. The demonstrated one (identity) is first.
 struct FreeMotion {
   Pose X_OF = Pose::Identity();
   double yaw = 0, tilt = 0, roll = 0;  // rad
