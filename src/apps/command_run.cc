@@ -10,13 +10,7 @@
 #include "base/error.h"
 #include "experiment/runner.h"
 #include "experiment/table.h"
-#if __has_include("experiment/trial.h")
 #include "experiment/trial.h"
-#else
-namespace springgrasp {
-inline TrialResult RunTrial(const TrialSpec&, const TrialOutput&) { Fail("not yet"); }
-}  // namespace springgrasp
-#endif
 
 namespace springgrasp {
 namespace {

@@ -37,6 +37,7 @@ int Main(int argc, char** argv) {
   AddObserveCommand(app, exit_code);
   AddLearnCommand(app, exit_code);
   AddGenerateCommand(app, exit_code);
+  AddPerformCommand(app, exit_code);
   AddInspectCommand(app, exit_code);
   AddModelCommand(app, exit_code);
   try {

@@ -8,16 +8,16 @@
 namespace springgrasp {
 
 struct ArmTarget {
-  ArmVector q = ArmVector::Zero();    // rad
-  ArmVector qd = ArmVector::Zero();   // rad/s
-  ArmVector qdd = ArmVector::Zero();  // rad/s^2
+  ArmVector q = ArmVector::Zero();                   // rad
+  ArmVector qd = ArmVector::Zero();                  // rad/s
+  ArmVector qdd = ArmVector::Zero();                 // rad/s^2
   ArmVector feedforward_torque = ArmVector::Zero();  // Nm
 };
 
 struct ArmGains {
-  double bandwidth = 30;           // ω, rad/s
-  double integral_bandwidth = 6;   // ω_i, rad/s
-  double max_integral = 20;        // rad/s^2, anti-windup
+  double bandwidth = 30;          // ω, rad/s
+  double integral_bandwidth = 6;  // ω_i, rad/s
+  double max_integral = 20;       // rad/s^2, anti-windup
 };
 
 struct ArmControlState {

@@ -24,8 +24,8 @@ HandVector FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& 
   Eigen::MatrixXd J(6, hand.num_joints());
   for (int f = 0; f < kNumFingers; ++f) {
     if (!grip.involved[f]) continue;
-    const Eigen::Vector3d force =
-        f == kThumb ? Eigen::Vector3d(grip.force * axis) : Eigen::Vector3d(-grip.force / count * axis);
+    const Eigen::Vector3d force = f == kThumb ? Eigen::Vector3d(grip.force * axis)
+                                              : Eigen::Vector3d(-grip.force / count * axis);
     FrameJacobian(hand, X_HB, tip_frames[f], J);
     torque += J.topRows<3>().transpose() * force;
   }

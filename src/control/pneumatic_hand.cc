@@ -31,8 +31,9 @@ ValveVector ControlHand(const PneumaticHandModel& model, const PneumaticGains& g
     const double g = model.torque_per_bar[v];
     const double wanted = torque[v] / count[v] + memory.integral[v];
     if (target.integrate && wanted > 0 && wanted < g * kMaxPressureBar) {
-      memory.integral[v] = std::clamp(memory.integral[v] + gains.integral * error[v] / count[v] * dt,
-                                      -gains.max_integral, gains.max_integral);
+      memory.integral[v] =
+          std::clamp(memory.integral[v] + gains.integral * error[v] / count[v] * dt,
+                     -gains.max_integral, gains.max_integral);
     }
     const double p = std::clamp(wanted / g, 0.0, kMaxPressureBar);
     command[v] = std::clamp(p + gains.lead * (p - state.pressure[v]), 0.0, kMaxPressureBar);

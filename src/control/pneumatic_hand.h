@@ -11,30 +11,30 @@ namespace springgrasp {
 
 // What the robot knows of its own chambers (models/armar3b/README.md says where from).
 struct PneumaticHandModel {
-  ValveVector torque_per_bar;     // g, Nm/bar on each joint of the valve
-  ValveVector return_stiffness;   // κ, Nm/rad
-  double return_rest = -0.2;      // q0, rad
+  ValveVector torque_per_bar;    // g, Nm/bar on each joint of the valve
+  ValveVector return_stiffness;  // κ, Nm/rad
+  double return_rest = -0.2;     // q0, rad
   // Valve of every hand joint.
-  static constexpr std::array<int, kNumHandJoints> kValveOfJoint = {0, 1, 2, 3, 4, 5, 6,
-                                                                    7, 7, 7, 7};
+  static constexpr std::array<int, kNumHandJoints> kValveOfJoint = {0, 1, 2, 3, 4, 5,
+                                                                    6, 7, 7, 7, 7};
   PneumaticHandModel();
 };
 
 // Gains act on torque, per radian of joint error (measured starting values: physics notes on a
 // 0.1 s chamber; tuned with experiments/first_grasps, seeds below 1000).
 struct PneumaticGains {
-  double stiffness = 0.45;      // Nm/rad
-  double integral = 0.15;       // Nm/(rad s)
-  double damping = 0.02;        // Nm s/rad
-  double lead = 1.5;            // of the pressure error
-  double max_integral = 0.08;   // Nm, anti-windup
+  double stiffness = 0.45;     // Nm/rad
+  double integral = 0.15;      // Nm/(rad s)
+  double damping = 0.02;       // Nm s/rad
+  double lead = 1.5;           // of the pressure error
+  double max_integral = 0.08;  // Nm, anti-windup
 };
 
 // What the hand shall do now.
 struct HandTarget {
-  HandVector q = HandVector::Zero();        // desired joint angles, rad
-  HandVector torque = HandVector::Zero();   // added joint torque (grip), Nm
-  bool integrate = true;                    // false holds the integral: the fingers press
+  HandVector q = HandVector::Zero();       // desired joint angles, rad
+  HandVector torque = HandVector::Zero();  // added joint torque (grip), Nm
+  bool integrate = true;                   // false holds the integral: the fingers press
 };
 
 struct HandControlState {

@@ -222,13 +222,6 @@ class HeldProblem {
 
 }  // namespace
 
-PerFinger<bool> InvolvedFingers(const std::string& type) {
-  if (type == "pinch" || type == "lateral") return {true, true, false, false, false};
-  if (type == "tripod") return {true, true, true, false, false};
-  ThrowUnless(type == "power", "grasp type '{}', expected pinch, tripod, power or lateral", type);
-  return {true, true, true, true, true};
-}
-
 HeldPosture SolveHeldPosture(const DemonstratorHand& hand, const std::string& type,
                              const Shape& shape, const GraspStyle& style) {
   HeldProblem held(hand, type, shape, style);

@@ -9,6 +9,7 @@
 #include "base/pose.h"
 #include "base/shape.h"
 #include "experiment/demonstrator_hand.h"
+#include "grasp/grasp_frame.h"
 
 namespace springgrasp {
 
@@ -27,9 +28,6 @@ struct HeldPosture {
   double worst_penetration = 0;  // m, of finger segments into the object
   double opposition_deg = 0;     // between the thumb's normal and the mean of the others
 };
-
-// Fingers of a type that touch. Throws Error for an unknown type, listing the known ones.
-PerFinger<bool> InvolvedFingers(const std::string& type);
 
 // Joint angles and hand pose by least squares: involved tip centres one tip radius outside the
 // surface, thumb opposed to the other fingers, finger segments outside the object, otherwise as

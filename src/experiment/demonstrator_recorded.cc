@@ -82,6 +82,24 @@ Pose AlignPoints(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen:
   return X;
 }
 
+// Thumb and fingers wear caps: where bare fingertips came nearer than two cap radii, each shown tip
+// gives way by half of what is missing (softly, so that the motion stays smooth).
+void KeepCapsApart(std::vector<std::vector<Eigen::Vector3d>>& tips, const PerFinger<bool>& known) {
+  constexpr double kCapsApart = 0.021;  // m
+  for (int f = kIndex; f < kNumFingers; ++f) {
+    if (!known[f]) continue;
+    for (std::size_t i = 0; i < tips[f].size(); ++i) {
+      const Eigen::Vector3d between = tips[f][i] - tips[kThumb][i];
+      const double distance = between.norm();
+      if (distance < 1e-4) continue;
+      const double wanted = std::pow(std::pow(distance, 6) + std::pow(kCapsApart, 6), 1.0 / 6);
+      const Eigen::Vector3d half = between * ((wanted - distance) / (2 * distance));
+      tips[f][i] += half;
+      tips[kThumb][i] -= half;
+    }
+  }
+}
+
 KnownTips TipsIn(const Pose& X_AH, const std::vector<std::vector<Eigen::Vector3d>>& p_AF,
                  const PerFinger<bool>& known, std::size_t i) {
   KnownTips tips;
@@ -234,6 +252,7 @@ HandMotion HandMotionOf(const DemonstratorHand& hand, const Demonstration& recor
     }
     tips[f] = Bridged(t, points);
   }
+  KeepCapsApart(tips, known);
   std::vector<Pose> X_WH(n);
   std::vector<KnownTips> p_HF(n);
   if (X_WM) {

@@ -16,6 +16,7 @@ namespace springgrasp {
 //   5 cm and 30 degrees of H;
 // - without a wrist the hand reaches along the movement, its thumb and index on the markers, turned
 //   about their line as a hand is that points where it goes;
+// - thumb and fingers keep two cap radii apart, where the bare fingertips came nearer;
 // - fingers that were not recorded rest half curled.
 // `type` names the grasp ("" : by the recorded fingers). What is shown is the hand's own motion;
 // per sample and finger a flag says whether it was measured. Throws Error without thumb and index.

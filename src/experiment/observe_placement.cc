@@ -150,17 +150,19 @@ class Search {
         std::min({box[0], eyes_.left.width - 1 - box[1], box[2], eyes_.left.height - 1 - box[3]});
     const Pose X_MW = X_WM.inverse();
     const Eigen::Vector3d p_ME = X_MW * p_WE_;
-    double angle = 0;
+    double angle = 0, apart = 0;
     for (const Instant& i : instants_) {
       const Eigen::Vector3d to_eyes = (p_ME - i.wrist).normalized();
       angle += std::acos(std::clamp(i.palm_normal.dot(to_eyes), -1.0, 1.0));
+      // Thumb and index beside each other, not one before the other: they meet in every grasp.
+      apart += to_eyes.cross((i.shape.tips[kIndex] - i.shape.tips[kThumb]).normalized()).norm();
     }
     place.palm_deg = angle / double(instants_.size()) * 180 / M_PI;
     double others = 0;
     CountSeen(X_MW, place.visible, others);
     // Nearest depth with margin, palm to the eyes within some 30 degrees, most tips seen.
     const double up = X_WM.linear().row(2).dot(motion_.up);
-    const double score = 100 * place.visible + 25 * others -
+    const double score = 100 * place.visible + 25 * others + 40 * apart / double(instants_.size()) -
                          3 * std::max(0.0, options_.margin_px - place.margin_px) -
                          1.0 * std::max(0.0, place.palm_deg - 30) -
                          30 * std::abs(depth - (options_.near + options_.far) / 2) + 5 * up;

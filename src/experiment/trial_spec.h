@@ -36,8 +36,7 @@ struct TrialOutput {
   bool overlay = false;       // the tracker's view
 };
 
-// Stages that truth can take the place of (system contract, section 1).
-inline const std::vector<std::string> kSubstitutes = {
-    "tracks", "hand_pose", "contacts", "k", "finger_joints", "arm", "object_pose"};
+// Stages that truth can take the place of (system contract, section 1; the others are not built).
+inline const std::vector<std::string> kSubstitutes = {"tracks", "hand_pose", "object_pose"};
 
 }  // namespace springgrasp

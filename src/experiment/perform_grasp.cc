@@ -1,0 +1,159 @@
+#include "experiment/perform_grasp.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+
+#include "base/files.h"
+#include "experiment/trajectory_csv.h"
+#include "render/camera_renderer.h"
+#include "render/video_writer.h"
+#include "sim/scene_builder.h"
+
+namespace springgrasp {
+namespace {
+
+constexpr double kVideoFps = 25;
+
+// Films a trial, the scene's overview cameras side by side.
+class Filmer {
+ public:
+  Filmer(const Simulation& simulation, const Scene& scene, const PerformGraspOptions& options)
+      : renderer_(simulation.model(), RenderOptions::Pretty(640, 480)),
+        writer_(options.video, kVideoFps) {
+    if (!options.camera.empty()) {
+      cameras_ = {options.camera};
+    } else {
+      for (const SceneCamera& camera : scene.cameras) cameras_.push_back(camera.name);
+      if (cameras_.empty()) cameras_ = {"front", "close"};
+      if (cameras_.size() > 2) cameras_.resize(2);
+    }
+  }
+
+  void Look(const Simulation& simulation, Phase phase) {
+    if (simulation.time() < next_) return;
+    next_ += 1 / kVideoFps;
+    std::vector<cv::Mat> views;
+    for (const std::string& camera : cameras_) {
+      views.push_back(renderer_.Bgr(simulation.data(), CameraView::Named(camera)));
+    }
+    cv::Mat frame;
+    cv::hconcat(views, frame);
+    DrawText(frame, fmt::format("{:5.2f} s  {}", simulation.time(), PhaseName(phase)));
+    writer_.Add(frame);
+  }
+
+  void Finish() { writer_.Finish(); }
+
+ private:
+  CameraRenderer renderer_;
+  VideoWriter writer_;
+  std::vector<std::string> cameras_;
+  double next_ = 0;
+};
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+void RecordPlan(const PlanResult& plan, TrialResult& result) {
+  auto& v = result.values;
+  v["mapping_error_mm"] = 1e3 * plan.mapping_error;
+  v["contact_slide_mm"] = 1e3 * plan.posture.slide;
+  v["contact_penetration_mm"] = 1e3 * plan.posture.penetration;
+  v["planned_opposition_deg"] = plan.posture.opposition_deg;
+  if (!plan.plan) return;
+  v["limit_margin"] = plan.limit_margin;
+  v["table_clearance_mm"] = 1e3 * plan.table_clearance;
+  v["approach_clearance_mm"] = 1e3 * plan.clearance;
+  v["free_angle_deg"] = plan.free_angle_deg;
+  v["reach_duration_s"] = plan.motion.T;
+}
+
+void RecordPerformance(const Performance& p, const GraspPlan& plan, const TrialCriteria& criteria,
+                       TrialResult& result) {
+  auto& v = result.values;
+  v["simulated_s"] = p.duration;
+  if (p.reached > Phase::kReach) {
+    v["arm_error_mm"] = 1e3 * p.arm_error;
+    v["arm_end_error_mm"] = 1e3 * p.end_error;
+    v["finger_error_mm"] = 1e3 * p.finger_error;
+  }
+  const ContactWindow& window = p.reached > Phase::kDisturb ? p.after
+                                : p.reached > Phase::kHold  ? p.hold
+                                                            : p.grip;
+  if (window.duration > 0) {
+    for (int f = 0; f < kNumFingers; ++f) {
+      v[fmt::format("normal_{}_n", kFingerNames[f])] = window.normal[f];
+      v[fmt::format("load_share_{}", kFingerNames[f])] = window.LoadShare(f);
+    }
+    v["palm_normal_n"] = window.palm_normal;
+    const ContactCheck check = CheckContacts(plan.type, window, plan.shape, criteria);
+    v["opposition_deg"] = check.opposition_deg;
+    v["epsilon"] = check.epsilon;
+    v["volume"] = check.volume;
+  }
+  if (p.reached >= Phase::kLift) {
+    v["slip_mm"] = 1e3 * p.slip;
+    v["rotation_deg"] = kDegrees * p.rotation;
+  }
+  if (p.reached > Phase::kHold) v["creep_mm_s"] = 1e3 * p.creep;
+  if (p.reached > Phase::kDisturb) v["shake_fraction"] = p.shake_fraction;
+}
+
+}  // namespace
+
+TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
+                         const PerformGraspOptions& options) {
+  TrialResult result;
+  Simulation simulation(BuildModel(scene));
+  const RobotIo robot(simulation.model());
+  const RobotBody body = MakeRobotBody(simulation);
+  const Pose X_WO = ObjectStartPose(scene, 0);
+  result.values["object_x"] = X_WO.translation().x();
+  result.values["object_y"] = X_WO.translation().y();
+
+  Scene believed = scene;
+  if (options.believe_truth) believed.objects[0].believed = SceneBelief();
+  PlanRequest request;
+  request.object = BelieveObject(believed, 0);
+  request.table_height = scene.table.height;
+  request.arm_start = robot.Read(simulation).arm_q;
+  request.criteria = options.criteria;
+  const PlanResult plan = PlanGrasp(body, grasp, request);
+  RecordPlan(plan, result);
+  if (!plan.plan) {
+    result.outcome = Outcome::kUnreachable;
+    result.message = plan.reason;
+    result.phase = "plan";
+    return result;
+  }
+  if (!options.motion.empty()) {
+    WriteFileAtomically(options.motion, FormatFingertipMotion(plan.motion));
+  }
+
+  robot.Place(plan.plan->arm.front(), plan.plan->hand.front(), simulation);
+  simulation.Forward();
+  PerformOptions perform;
+  perform.criteria = options.criteria;
+  perform.max_finger_force = scene.max_finger_force;
+  std::optional<Filmer> filmer;
+  if (!options.video.empty()) filmer.emplace(simulation, scene, options);
+  const Performance performance =
+      Perform(simulation, robot, scene.objects[0].name, body.hand.tree, body.arm.tree, *plan.plan,
+              perform, [&](const Simulation& now, Phase phase) {
+                if (filmer) filmer->Look(now, phase);
+              });
+  if (filmer) filmer->Finish();
+  if (!options.trajectory.empty()) {
+    WriteFileAtomically(options.trajectory, FormatTrajectory(performance.trajectory));
+  }
+  const TrialEvent verdict = DecideOutcome(performance.events);
+  result.outcome = verdict.outcome;
+  result.message = verdict.message;
+  result.phase = std::string(PhaseName(performance.reached));
+  RecordPerformance(performance, *plan.plan, options.criteria, result);
+  return result;
+}
+
+}  // namespace springgrasp

@@ -1,0 +1,29 @@
+// One grasp of the library on a scene: plan it, perform it, judge it.
+#pragma once
+
+#include <string>
+
+#include "experiment/perform.h"
+#include "experiment/plan_grasp.h"
+#include "experiment/trial_result.h"
+#include "experiment/trial_spec.h"
+#include "grasp/grasp.h"
+#include "sim/scene.h"
+
+namespace springgrasp {
+
+struct PerformGraspOptions {
+  TrialCriteria criteria;
+  bool believe_truth = false;  // the object's true pose, size, mass and friction are known
+  std::string camera;          // of the video; empty: the scene's overview cameras side by side
+  std::string video;           // .mp4, if not empty
+  std::string trajectory;      // .csv of what the robot did, if not empty
+  std::string motion;          // .csv of the generated fingertip motion, if not empty
+};
+
+// `scene`: poses drawn already; the first object is grasped. Fills outcome, message, phase and the
+// values of planning and physics of the result; never throws for what physics does.
+TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
+                         const PerformGraspOptions& options);
+
+}  // namespace springgrasp

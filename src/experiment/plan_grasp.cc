@@ -1,0 +1,183 @@
+#include "experiment/plan_grasp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.h"
+#include "grasp/generate.h"
+#include "kinematics/hand_ik.h"
+#include "kinematics/hand_motion.h"
+#include "kinematics/reach_plan.h"
+
+namespace springgrasp {
+namespace {
+
+// Slower reaches are tried where the arm is not fast enough for the demonstrated one.
+constexpr double kSlower[] = {1.0, 1.4, 2.0, 2.8};
+
+std::vector<KnownTips> TipsOf(const FingertipMotion& motion) {
+  std::vector<KnownTips> tips(motion.samples.size());
+  for (std::size_t i = 0; i < tips.size(); ++i) {
+    for (int f = 0; f < kNumFingers; ++f) tips[i][f] = motion.samples[i].p_HF[f];
+  }
+  return tips;
+}
+
+std::size_t ContactSample(const FingertipMotion& motion, double dt) {
+  return std::min(motion.samples.size() - 1, static_cast<std::size_t>(std::lround(motion.T / dt)));
+}
+
+ContactRequest RequestContacts(const RobotBody& body, const FingertipMotion& motion,
+                               const Eigen::VectorXd& q_human) {
+  ContactRequest contacts;
+  contacts.type = motion.type;
+  contacts.involved = motion.involved;
+  contacts.shape = motion.shape;
+  contacts.p_OC = motion.p_OC;
+  contacts.n_OC = motion.n_OC;
+  contacts.X_OH_human = motion.X_HO.inverse();
+  contacts.X_OG = contacts.X_OH_human * motion.X_HG;
+  contacts.human = TargetFromHuman(body.human, q_human, body.hand);
+  return contacts;
+}
+
+HandMotionRequest RequestHandMotion(const FingertipMotion& motion,
+                                    const std::vector<Eigen::VectorXd>& q_human,
+                                    const std::vector<Pose>& X_WH, const Pose& X_WO, double dt) {
+  HandMotionRequest request;
+  request.dt = dt;
+  request.T = motion.T;
+  request.t_switch = motion.t_switch;
+  request.q_human = q_human;
+  request.involved = motion.involved;
+  request.shape = motion.shape;
+  const Pose X_OH = motion.X_HO.inverse();
+  const Pose X_OW = X_WO.inverse();
+  for (std::size_t i = 0; i < motion.samples.size(); ++i) {
+    PerFinger<Eigen::Vector3d> tips;
+    for (int f = 0; f < kNumFingers; ++f) tips[f] = X_OH * motion.samples[i].p_HF[f];
+    request.p_OF.push_back(tips);
+    request.X_OH.push_back(X_OW * X_WH[i]);
+  }
+  return request;
+}
+
+template <typename Vector>
+std::vector<Vector> Fixed(const std::vector<Eigen::VectorXd>& path) {
+  return std::vector<Vector>(path.begin(), path.end());
+}
+
+}  // namespace
+
+PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanRequest& request) {
+  ThrowUnless(request.object.shape.has_value(),
+              "the object of the scene has no primitive shape; grasping needs sphere, cylinder or "
+              "box");
+  PlanResult result;
+  const double dt = request.dt;
+  GenerateOptions generate;
+  generate.shape = *request.object.shape;
+  generate.tip_radius = body.hand.tip_radius;
+  generate.dt = dt;
+  const Pose X_WH_start = HandPose(body.arm, request.arm_start);
+
+  for (const double slower : kSlower) {
+    generate.duration = slower * grasp.scales.T;
+    generate.X_WO = request.object.X_WO;
+    generate.X_WG_start.reset();
+
+    // Where the hand holds the object (independent of where the object stands).
+    FingertipMotion motion = GenerateMotion(grasp, generate);
+    std::vector<Eigen::VectorXd> q_human = SolveHandMotion(body.human, TipsOf(motion));
+    const ContactRequest contacts =
+        RequestContacts(body, motion, q_human[ContactSample(motion, dt)]);
+    result.posture = SolveContactPosture(body.hand, contacts);
+    const Pose X_GH = result.posture.X_HG.inverse();
+    const Eigen::VectorXd q_open =
+        OpenedPosture(body.hand, result.posture, generate.shape, motion.involved, 0.010);
+
+    // The reach of G from where the robot's hand is, for an object turned by what it leaves free.
+    const auto path = [&](const Pose& X_OF) {
+      GenerateOptions turned = generate;
+      turned.X_WO = request.object.X_WO * X_OF;
+      turned.X_WG_start = X_WH_start * result.posture.X_HG;
+      motion = GenerateMotion(grasp, turned);
+      std::vector<Pose> X_OH;
+      for (const FingertipMotionSample& sample : motion.samples) {
+        X_OH.push_back(turned.X_WO.inverse() * sample.X_WG * X_GH);
+      }
+      X_OH = ClearApproach(body.hand, generate.shape, X_OH, q_open, dt, motion.T, 0.010);
+      for (Pose& X : X_OH) X = turned.X_WO * X;
+      return X_OH;
+    };
+
+    const std::vector<Pose> nominal = path(Pose::Identity());
+    const HandMotionResult nominal_hand = MapHandMotion(
+        body.human, body.hand, RequestHandMotion(motion, q_human, nominal, request.object.X_WO, dt),
+        result.posture);
+    ReachRequest reach;
+    reach.shape = generate.shape;
+    reach.X_WO = request.object.X_WO;
+    reach.X_HO = result.posture.X_HO;
+    reach.X_HG = result.posture.X_HG;
+    reach.tilt_free = grasp.type != "power";
+    reach.table_height = request.table_height;
+    reach.dt = dt;
+    reach.T = motion.T;
+    reach.q_hand = nominal_hand.q;
+    reach.path = path;
+    Arm arm = body.arm;
+    for (int j = 0; j < arm.num_joints(); ++j) arm.q[arm.joints[j]] = request.arm_start[j];
+    ReachOptions options;
+    options.lift = request.criteria.lift_height;
+    options.lift_duration = request.criteria.lift;
+    options.shake = request.criteria.shake_amplitude;
+    options.shake_frequency = request.criteria.shake_frequency;
+    options.shake_duration = request.criteria.shake_duration;
+    const ReachPlan planned = PlanReach(arm, body.hand, reach, options);
+    result.reason = planned.reason;
+    if (!planned.reachable) continue;
+
+    // The chosen one in full.
+    const Pose X_WO = request.object.X_WO * planned.X_OF;
+    path(planned.X_OF);
+    q_human = SolveHandMotion(body.human, TipsOf(motion));
+    const HandMotionResult hand =
+        MapHandMotion(body.human, body.hand,
+                      RequestHandMotion(motion, q_human, planned.X_WH, X_WO, dt), result.posture);
+    result.motion = motion;
+    result.mapping_error = hand.mapping_error;
+    result.clearance = hand.clearance;
+    result.limit_margin = planned.limit_margin;
+    result.table_clearance = planned.table_clearance;
+    result.free_angle_deg = RotationDistance(Eigen::Quaterniond::Identity(),
+                                             Eigen::Quaterniond(planned.X_OF.linear())) *
+                            180 / std::numbers::pi;
+
+    GraspPlan plan;
+    plan.type = grasp.type;
+    plan.involved = motion.involved;
+    plan.shape = generate.shape;
+    plan.mass = request.object.mass;
+    plan.friction = request.object.friction;
+    plan.dt = dt;
+    plan.T = motion.T;
+    plan.X_WH = planned.X_WH;
+    plan.arm = Fixed<ArmVector>(planned.arm);
+    plan.hand = Fixed<HandVector>(hand.q);
+    plan.lift = Fixed<ArmVector>(planned.lift);
+    for (int axis = 0; axis < 3; ++axis) plan.shake[axis] = Fixed<ArmVector>(planned.shake[axis]);
+    plan.X_HO = result.posture.X_HO;
+    for (std::size_t i = 0; i < hand.p_HF.size(); ++i) {
+      PerFinger<Eigen::Vector3d> tips;
+      for (int f = 0; f < kNumFingers; ++f) tips[f] = planned.X_WH[i] * hand.p_HF[i][f];
+      plan.p_WF.push_back(tips);
+    }
+    result.plan = std::move(plan);
+    return result;
+  }
+  return result;
+}
+
+}  // namespace springgrasp

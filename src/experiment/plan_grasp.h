@@ -1,0 +1,41 @@
+// From a grasp of the library to the robot's commands: contacts, hand mapping (Eq. 14-16), arm.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "experiment/grasp_plan.h"
+#include "experiment/phases.h"
+#include "experiment/robot_body.h"
+#include "grasp/fingertip_motion.h"
+#include "grasp/grasp.h"
+#include "kinematics/contact_posture.h"
+#include "sim/scene.h"
+
+namespace springgrasp {
+
+struct PlanRequest {
+  BelievedObject object;                    // its shape must be known
+  double table_height = 0;                  // m
+  ArmVector arm_start = ArmVector::Zero();  // rad
+  TrialCriteria criteria;                   // lift and shake are planned too
+  double dt = 0.005;                        // s
+};
+
+struct PlanResult {
+  std::optional<GraspPlan> plan;  // nothing: unreachable, for this reason
+  std::string reason;
+  FingertipMotion motion;  // as generated for the chosen pose of the grasp
+  ContactPosture posture;
+  double mapping_error = 0;    // m, involved fingertips against those wanted, mean over reach
+  double limit_margin = 0;     // see ReachPlan
+  double table_clearance = 0;  // m
+  double clearance = 0;        // m, hand and object before closing
+  double free_angle_deg = 0;   // how far the chosen pose is turned from the demonstrated one
+};
+
+// System contract 5.5-5.7: the grasp frame G is carried over, not the wrist; what the object leaves
+// free is chosen by reachability and clearance. Throws Error for an object without a shape.
+PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanRequest& request);
+
+}  // namespace springgrasp

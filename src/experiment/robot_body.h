@@ -1,0 +1,20 @@
+// The robot's own kinematics, and the human hand it compares itself with: what planning knows.
+#pragma once
+
+#include "kinematics/arm_ik.h"
+#include "kinematics/human_hand.h"
+#include "kinematics/robot_hand.h"
+#include "sim/simulation.h"
+
+namespace springgrasp {
+
+struct RobotBody {
+  Arm arm;  // world to hand frame H, right side
+  RobotHand hand;
+  HumanHand human;  // MMM hand of the shipped size, scaled by the caller where it matters
+};
+
+// From a scene's model at its start posture. Throws Error if the model lacks arm or hand.
+RobotBody MakeRobotBody(const Simulation& simulation);
+
+}  // namespace springgrasp

@@ -1,0 +1,209 @@
+#include "experiment/trial.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "experiment/demonstrator_hand.h"
+#include "experiment/observe.h"
+#include "experiment/perform_grasp.h"
+#include "grasp/learn.h"
+#include "sim/kinematic_tree_of.h"
+#include "sim/scene_builder.h"
+
+namespace springgrasp {
+namespace {
+
+constexpr double kMinSeen = 0.6;        // of the frames, else `untracked`
+constexpr double kMaxUnseenEnd = 0.15;  // s before contact, else `untracked`
+
+bool Substituted(const TrialSpec& spec, const std::string& stage) {
+  return std::find(spec.substitute.begin(), spec.substitute.end(), stage) != spec.substitute.end();
+}
+
+void CheckSubstitutes(const TrialSpec& spec) {
+  for (const std::string& stage : spec.substitute) {
+    ThrowUnless(stage == "tracks" || stage == "hand_pose" || stage == "object_pose",
+                "substitute: '{}' is not available yet; expected tracks, hand_pose or object_pose",
+                stage);
+  }
+}
+
+// What the learner is given: tracked, or truth in the place of some of it.
+Demonstration DemonstrationFor(const TrialSpec& spec, const Observation& seen) {
+  Demonstration demonstration = seen.tracked;
+  for (std::size_t i = 0; i < demonstration.samples.size(); ++i) {
+    DemonstrationSample& sample = demonstration.samples[i];
+    const DemonstrationSample& truth = seen.truth.samples[i];
+    if (Substituted(spec, "tracks")) sample.p_WF = truth.p_WF;
+    if (Substituted(spec, "hand_pose")) {
+      sample.p_WH = truth.p_WH;
+      sample.R_WH = truth.R_WH;
+    }
+  }
+  return demonstration;
+}
+
+// The baseline: the same reach, with the fingers held as an open hand all the time.
+void HoldOpen(Demonstration& demonstration) {
+  const ModelPtr model = LoadModelFile(ModelPath("mmm_hand/mmm_hand_r.xml"));
+  const DemonstratorHand hand = MakeDemonstratorHand(KinematicTreeOf(*model, "mmm_hand"));
+  const PerFinger<Eigen::Vector3d> p_HF = ComputeHandShape(hand, hand.open).tips;
+  for (DemonstrationSample& sample : demonstration.samples) {
+    sample.p_WF.fill(std::nullopt);
+    if (!sample.p_WH || !sample.R_WH) continue;
+    const Pose X_WH = MakePose(*sample.p_WH, *sample.R_WH);
+    for (int f = 0; f < kNumFingers; ++f) sample.p_WF[f] = X_WH * p_HF[f];
+  }
+}
+
+// Contract: an involved finger seen in fewer than 60 % of frames, or not within 0.15 s of contact.
+std::string Untracked(const Demonstration& demonstration, const PerFinger<bool>& involved) {
+  const double end = demonstration.samples.back().t;
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (!involved[f]) continue;
+    int seen = 0;
+    double last = -1e9;
+    for (const DemonstrationSample& sample : demonstration.samples) {
+      if (!sample.p_WF[f]) continue;
+      ++seen;
+      last = sample.t;
+    }
+    const double share =
+        static_cast<double>(seen) / static_cast<double>(demonstration.samples.size());
+    if (share < kMinSeen) {
+      return fmt::format("{} seen in {:.0f} % of the frames", kFingerNames[f], 100 * share);
+    }
+    if (end - last > kMaxUnseenEnd) {
+      return fmt::format("{} not seen in the last {:.2f} s", kFingerNames[f], end - last);
+    }
+  }
+  return "";
+}
+
+void RecordObservation(const Observation& seen, TrialResult& result) {
+  auto& v = result.values;
+  const ObservationErrors& e = seen.errors;
+  v["tracking_median_mm"] = 1e3 * e.median_all;
+  double worst = 0, coverage = 1;
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (e.counted[f] == 0) continue;
+    v[fmt::format("tracking_{}_mm", kFingerNames[f])] = 1e3 * e.median[f];
+    worst = std::max(worst, e.p95[f]);
+    coverage = std::min(coverage, e.coverage[f]);
+  }
+  v["tracking_95_mm"] = 1e3 * worst;
+  v["coverage"] = coverage;
+  v["label_swaps"] = e.label_swaps;
+  v["wrist_error_mm"] = 1e3 * e.wrist_median;
+  v["wrist_error_deg"] = e.wrist_rotation_median_deg;
+}
+
+void RecordGrasp(const Grasp& grasp, TrialResult& result) {
+  auto& v = result.values;
+  double sum = 0;
+  int count = 0;
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (grasp.quality.samples[f] == 0) continue;
+    v[fmt::format("reproduction_{}_mm", kFingerNames[f])] = 1e3 * grasp.quality.rmse[f];
+    if (!grasp.involved[f]) continue;
+    sum += grasp.quality.rmse[f] * grasp.quality.rmse[f];
+    ++count;
+  }
+  if (count > 0) v["reproduction_mm"] = 1e3 * std::sqrt(sum / count);
+  v["reach_rmse_mm"] = 1e3 * grasp.quality.reach_rmse;
+  v["condition_number"] = grasp.quality.condition_number;
+  for (const GraspEdge& edge : grasp.edges) {
+    v[fmt::format("k_{}{}", edge.i, edge.j)] = edge.k;
+    v[fmt::format("k_se_{}{}", edge.i, edge.j)] = edge.standard_error;
+  }
+}
+
+// Measures wall time per stage; decides nothing.
+class Stopwatch {
+ public:
+  explicit Stopwatch(TrialResult& result) : result_(result) {}
+  void Lap(const std::string& stage) {
+    const auto now = std::chrono::steady_clock::now();
+    result_.wall_s[stage] = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  TrialResult& result_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+TrialResult RunTrial(const TrialSpec& spec, const TrialOutput& output) {
+  CheckSubstitutes(spec);
+  ThrowUnless(!spec.scene.objects.empty(), "{}: the scene has no object to grasp",
+              spec.scene.source);
+  const auto file = [&](bool wanted, const char* name) {
+    return wanted && !output.folder.empty() ? (std::filesystem::path(output.folder) / name).string()
+                                            : std::string();
+  };
+  const auto stream = [&](const char* name) {
+    return MakeStream(spec.seed, spec.repetition, name);
+  };
+  TrialResult result;
+  Stopwatch watch(result);
+  Scene scene = spec.scene;
+  RandomEngine pose_engine = stream("pose");
+  DrawObjectPoses(scene, pose_engine);
+
+  RandomEngine observation_engine = stream("observation");
+  ObserveOptions observe;
+  observe.fps = scene.demonstrator.fps;
+  observe.overlay = file(output.overlay, "tracking.mp4");
+  const Observation seen = Observe(scene, observation_engine, observe);
+  RecordObservation(seen, result);
+  watch.Lap("observe");
+
+  Demonstration demonstration = DemonstrationFor(spec, seen);
+  if (spec.open_hand) HoldOpen(demonstration);
+  if (output.trajectories && !output.folder.empty()) {
+    WriteDemonstration(demonstration, file(true, "demonstration.csv"));
+    WriteDemonstration(seen.truth, file(true, "truth.csv"));
+  }
+  const std::string untracked = Untracked(demonstration, seen.shown.involved);
+  if (!untracked.empty()) {
+    result.outcome = Outcome::kUntracked;
+    result.message = untracked;
+    result.phase = "observe";
+    return result;
+  }
+
+  LearnOptions learn;
+  learn.type = spec.grasp_type;
+  learn.dim = spec.dim;
+  learn.profile = spec.profile;
+  learn.hand_length = scene.demonstrator.hand_length;
+  const Grasp grasp = LearnGrasp(demonstration, learn);
+  RecordGrasp(grasp, result);
+  if (output.trajectories) WriteGrasp(grasp, file(true, "grasp.yaml"));
+  watch.Lap("learn");
+
+  PerformGraspOptions perform;
+  perform.criteria = spec.criteria;
+  perform.believe_truth = Substituted(spec, "object_pose");
+  perform.video = file(output.video, "grasp.mp4");
+  perform.motion = file(output.trajectories, "motion.csv");
+  perform.trajectory = file(output.trajectories, "trajectory.csv");
+  TrialResult performed = PerformGrasp(grasp, scene, perform);
+  result.outcome = performed.outcome;
+  result.message = performed.message;
+  result.phase = performed.phase;
+  result.values.merge(performed.values);
+  watch.Lap("perform");
+  return result;
+}
+
+}  // namespace springgrasp
