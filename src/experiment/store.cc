@@ -1,7 +1,6 @@
 #include "experiment/store.h"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -102,12 +101,16 @@ void CheckPlan(Database& database, const std::string& directory, const RunDescri
 
 }  // namespace
 
-// An advisory lock on the directory; the file itself stays, empty.
+// An advisory lock on the directory; the file itself stays, empty. A POSIX lock, because worker
+// processes must not inherit it: it goes when this process goes.
 struct ResultStore::Lock {
   explicit Lock(const std::string& directory) {
     fd = open((fs::path(directory) / ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     ThrowUnless(fd >= 0, "{}: cannot be written", directory);
-    if (flock(fd, LOCK_EX | LOCK_NB) != 0) {
+    struct flock whole_file = {};
+    whole_file.l_type = F_WRLCK;
+    whole_file.l_whence = SEEK_SET;
+    if (fcntl(fd, F_SETLK, &whole_file) != 0) {
       close(fd);
       Fail("{}: another run is writing there", directory);
     }

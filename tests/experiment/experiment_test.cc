@@ -47,8 +47,9 @@ TEST(ExperimentTest, IdentityFollowsWhatMattersAndNothingElse) {
   const std::string text = kSmallExperiment;
   EXPECT_EQ(Ids(SmallExperiment(folder, text + "record: {videos: all}\n")), ids);
   EXPECT_EQ(Ids(SmallExperiment(folder, "# a comment\n" + text, {"name=renamed"})), ids);
-  for (const std::string change : {"seed=8", "criteria.hold=1.5", "substitute=[k]", "cases.0.dim=2",
-                                   "cases.0.profile=paper", "cases.0.grasp=power"}) {
+  for (const std::string change :
+       {"seed=8", "criteria.hold=1.5", "substitute=[tracks]", "cases.0.dim=2",
+        "cases.0.profile=paper", "cases.0.grasp=power"}) {
     EXPECT_NE(Ids(SmallExperiment(folder, text, {change})), ids) << change;
   }
   folder.Write("scene.yaml", std::string("# a comment\n") + kSmallScene);
@@ -148,10 +149,11 @@ TEST(ExperimentTest, BadInputSaysWhereAndWhatWouldBeValid) {
   EXPECT_THAT(message(text, {"seed=1.5"}), HasSubstr("seed is 1.5"));
   EXPECT_THAT(message(text, {"cases.0.grasp=punch"}), HasSubstr("pinch, tripod, power, lateral"));
   EXPECT_THAT(message(text, {"criteria.hold=-1"}), HasSubstr("criteria.hold is -1"));
-  EXPECT_THAT(message(text, {"substitute=[truth]"}), HasSubstr("finger_joints"));
+  EXPECT_THAT(message(text, {"substitute=[truth]"}), HasSubstr("object_pose"));
   EXPECT_THAT(message(text, {"cases.1.set={}"}), HasSubstr("hold the same trial"));
   EXPECT_THAT(message(text, {"cases.1.set={objects.0.mass: -1}"}), HasSubstr("mass is -1"));
-  EXPECT_THAT(message(text, {"cases.1.set={objects.0.wait: 1}"}), HasSubstr("unknown key 'wait'"));
+  EXPECT_THAT(message(text, {"cases.1.set={objects.0.wait: 1}"}),
+              HasSubstr("unknown key 'objects[0].wait'"));
   EXPECT_THAT(message(text, {"cases.1.scene=nowhere.yaml"}), HasSubstr("nowhere.yaml"));
   EXPECT_THAT(message(text, {"cases.0.demonstration={kind: recorded}"}), HasSubstr("match"));
   EXPECT_THAT(message(text, {"cases.0.demonstration={kind: recorded, match: '*.csv'}"}),
