@@ -24,7 +24,11 @@ std::string List(const double* values, std::size_t count) {
 }
 std::string List(const Eigen::Vector3d& v) { return List(v.data(), 3); }
 std::string List(const std::vector<double>& v) { return List(v.data(), v.size()); }
-std::string List(const Pose& X) { return List(PoseToArray(X).data(), 7); }
+// A pose goes through a quaternion, whose last digit may turn: with one digit less, what was read
+// is written again as it was.
+std::string List(const Pose& X) {
+  return fmt::format("[{:.15g}]", fmt::join(PoseToArray(X), ", "));
+}
 std::string Column(const Eigen::MatrixXd& m, Eigen::Index column) {
   const Eigen::VectorXd v = m.col(column);
   return List(v.data(), static_cast<std::size_t>(v.size()));

@@ -21,7 +21,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr double kNominalHandLength = 0.189;  // m, of the relaxed tips; MMM hand at 1.75 m
-constexpr double kContactWindow = 0.05;       // s, on either side of the contact instant
+constexpr double kContactWindow = 0.08;       // s, after the contact instant
 
 // Tips of the relaxed hand, m, at the demonstrator's hand length.
 Fingertips RelaxedTips(const LearnOptions& options) {
@@ -36,11 +36,10 @@ Pose NominalGraspInHand(const LearnOptions& options) {
   return X_HG;
 }
 
-// Mean tips in H around the contact.
+// Mean tips in H at and just after the contact, while the fingers stay closed.
 Fingertips TipsAtContact(const HandTrack& track, int contact) {
-  const int half = static_cast<int>(kContactWindow / track.dt);
-  const int from = std::max(0, contact - half);
-  const int to = std::min(track.size() - 1, contact + half);
+  const int from = std::min(contact, track.size() - 1);
+  const int to = std::min(track.size() - 1, contact + static_cast<int>(kContactWindow / track.dt));
   Fingertips mean = track.p_HF[static_cast<std::size_t>(from)];
   for (int n = from + 1; n <= to; ++n) {
     for (int i = 0; i < kNumFingers; ++i) mean[i] += track.p_HF[static_cast<std::size_t>(n)][i];

@@ -198,7 +198,7 @@ FitResult FitSprings(const FitProblem& problem) {
 
   FitResult best;
   double best_error = std::numeric_limits<double>::infinity();
-  const double enough = 0.0025 + 1.8 * problem.noise;  // 1.7: three coordinates
+  const double enough = 0.004 + 1.8 * problem.noise;  // 1.7: three coordinates
   for (const Start& start : problem.human ? kHumanStarts : kPaperStarts) {
     if (best_error < enough) break;
     DimensionlessGains gains;

@@ -74,7 +74,7 @@ inline Pose SyntheticGraspInHand() {
   R.col(0) = Eigen::Vector3d::UnitZ();
   R.col(1) = Eigen::Vector3d::UnitY();
   R.col(2) = -Eigen::Vector3d::UnitX();
-  return MakePose(Eigen::Vector3d(0.13, 0.02, -0.04), Eigen::Quaterniond(R));
+  return MakePose(Eigen::Vector3d(0.13, 0, -0.04), Eigen::Quaterniond(R));
 }
 
 inline Demonstration MakeDemonstration(const SyntheticGrasp& grasp, RandomEngine& engine) {
