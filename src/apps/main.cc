@@ -17,6 +17,17 @@ std::string VersionText() {
                      mj_versionString(), RendererDescription());
 }
 
+// "" if the first argument is a command or an option.
+std::string UnknownCommand(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return "";
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == argv[1]) return "";
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  }
+  return fmt::format("there is no command '{}'; expected one of {}", argv[1], names);
+}
+
 int Report(const char* message, int code) {
   fmt::print(stderr, "springgrasp: {}\n", message);
   return code;
@@ -40,6 +51,8 @@ int Main(int argc, char** argv) {
   AddPerformCommand(app, exit_code);
   AddInspectCommand(app, exit_code);
   AddModelCommand(app, exit_code);
+  const std::string unknown = UnknownCommand(app, argc, argv);
+  if (!unknown.empty()) return Report(unknown.c_str(), kBadInput);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {
