@@ -1,113 +1,16 @@
 #include "vision/fingertip_tracker.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
-#include "base/error.h"
-#include "vision/mean_shift.h"
-#include "vision/skin_mask.h"
+#include "vision/fingertip_tracker_impl.h"
 
 namespace springgrasp {
-namespace {
 
-// One camera's instance of the paper's tracker.
-struct View {
-  cv::Mat likelihood, bins;  // whole picture; valid in `roi`
-  cv::Rect roi;
-  ParticleSet particles;
-  Regions region;  // mode of each finger, px
-  Regions motion;  // last displacement, px per frame
-  PerFinger<bool> active = {};
-  PerFinger<double> mass = {};        // found over expected cap pixels
-  PerFinger<double> similarity = {};  // of the colour
-};
-
-constexpr int kRadiusFrames = 20;  // over which a cap's size is averaged
-
-constexpr double kHintShare = 0.5;     // of the hand fit in a finger's direction
-constexpr double kUsualDepth = -0.45;  // of a finger's direction along the optical axis
-
-// A finger's state between the views.
-struct FingerState {
-  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
-  Eigen::Vector3d v_W = Eigen::Vector3d::Zero();  // m per frame
-  Eigen::Vector3d axis_W = Eigen::Vector3d::UnitX();
-  int lost_frames = 0;
-  double radius = 0;  // m, of this cap
-  int radius_count = 0;
-};
-
-}  // namespace
+using namespace tracker_internal;  // NOLINT: the tracker's own names
 
 int TrackedFrame::num_seen() const {
   int seen = 0;
   for (const TrackedFinger& finger : fingers) seen += finger.p_W.has_value();
   return seen;
 }
-
-struct FingertipTracker::Impl {
-  StereoCameras cameras;
-  TrackerOptions options;
-  MarkerColour colour;
-  CapShape cap;
-  SkinModel skin;
-  bool started = false;
-  std::array<View, 2> views;
-  PerFinger<FingerState> fingers;
-  Eigen::Vector3d p_WPalm = Eigen::Vector3d::Zero();
-  std::array<int, 2> turn = {0, 0};
-
-  // The search after a violation: what is left of the likelihood once found caps are cut out.
-  struct Candidate {
-    MarkerBlob blob;
-  };
-
-  Impl(const StereoCameras& c, const TrackerOptions& o)
-      : cameras(c), options(o), colour(MakeMarkerColour(o.colour)), cap(o.cap) {
-    for (int v = 0; v < 2; ++v) {
-      const CameraModel& camera = cameras.view(v);
-      views[v].likelihood = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
-      views[v].bins = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
-    }
-  }
-
-  void CheckSize(const cv::Mat& picture, int v) const {
-    const CameraModel& camera = cameras.view(v);
-    ThrowUnless(
-        picture.type() == CV_8UC3 && picture.cols == camera.width && picture.rows == camera.height,
-        "{} picture is {}x{}, expected {}x{} BGR as its camera is calibrated for",
-        v == 0 ? "left" : "right", picture.cols, picture.rows, camera.width, camera.height);
-  }
-
-  cv::Rect Whole(int v) const { return {0, 0, cameras.view(v).width, cameras.view(v).height}; }
-
-  double DepthOf(int v, const Eigen::Vector3d& p_W) const {
-    const Pose& X_WC = cameras.view(v).X_WC;
-    return std::max(0.05, X_WC.linear().col(2).dot(p_W - X_WC.translation()));
-  }
-
-  double RadiusPx(int v, const Eigen::Vector3d& p_W) const {
-    return cameras.view(v).fx * cap.radius / DepthOf(v, p_W);
-  }
-
-  // The shape of finger f's cap: caps of one kind differ a little in size.
-  CapShape ShapeOf(int f) const {
-    CapShape shape = cap;
-    shape.radius = fingers[f].radius;
-    return shape;
-  }
-
-  std::optional<TrackedFrame> Start(const cv::Mat& left, const cv::Mat& right);
-  TrackedFrame Update(const cv::Mat& left, const cv::Mat& right, RandomEngine& engine);
-  void TrackView(int v, const cv::Mat& bgr, RandomEngine& engine);
-  void Judge(int v);
-  void Search(const std::array<const cv::Mat*, 2>& pictures);
-  void Label(const PerFinger<Eigen::Vector3d>& p_WCaps, const PerFinger<int>& order);
-  TrackedFrame Measure(const std::array<const cv::Mat*, 2>& pictures);
-  Eigen::Vector2d PalmPixel(int v) const;
-  Eigen::Vector3d ExpectedAxis(const std::array<const cv::Mat*, 2>& pictures, int f) const;
-};
 
 Eigen::Vector2d FingertipTracker::Impl::PalmPixel(int v) const {
   return Project(cameras.view(v), p_WPalm).value_or(Eigen::Vector2d(0, 0));
@@ -204,7 +107,7 @@ void FingertipTracker::Impl::Judge(int v) {
       continue;
     }
     const double r = RadiusPx(v, fingers[f].p_W);
-    view.mass[f] = std::min(1.0, view.mass[f] / (std::numbers::pi * r * r));
+    view.mass[f] /= std::numbers::pi * r * r;
     const Histogram histogram = RegionHistogram(view.bins, view.region[f], 0.8 * r);
     view.similarity[f] = Bhattacharyya(histogram, colour.model);
     view.active[f] =
@@ -235,6 +138,25 @@ void FingertipTracker::Impl::TrackView(int v, const cv::Mat& bgr, RandomEngine& 
   WeightParticles(view.bins, colour.model, previous, view.motion, view.active, radius,
                   options.particles, view.particles);
   Regions estimate = MeanRegions(view.particles);
+  // Beside a neighbour the visible parts attract each other's regions: there the estimate is where
+  // the point in space should be, moved as the rest of the hand was.
+  Eigen::Vector2d common = Eigen::Vector2d::Zero();
+  Regions expected = estimate;
+  PerFinger<bool> crowded = {};
+  int alone = 0;
+  for (int f = 0; f < kNumFingers; ++f) {
+    expected[f] = Project(cameras.view(v), fingers[f].p_W + fingers[f].v_W).value_or(estimate[f]);
+    for (int g = 0; g < kNumFingers; ++g) {
+      crowded[f] = crowded[f] || (g != f && (estimate[f] - estimate[g]).norm() < 2.6 * radius[f]);
+    }
+    if (crowded[f] || !view.active[f]) continue;
+    common += estimate[f] - expected[f];
+    ++alone;
+  }
+  if (alone > 0) common /= alone;
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (crowded[f]) estimate[f] = expected[f] + common;
+  }
   PerFinger<double> window;
   for (int f = 0; f < kNumFingers; ++f) window[f] = 1.3 * radius[f];
   const MeanShiftResult modes = MeanShift(view.likelihood, estimate, view.active, window);
@@ -248,216 +170,6 @@ void FingertipTracker::Impl::TrackView(int v, const cv::Mat& bgr, RandomEngine& 
   }
 }
 
-// Fingers that are lost, out of order, or differ between the views are sought anew, each within
-// reach of where it should be, among the cap pixels that no other finger claims.
-void FingertipTracker::Impl::Search(const std::array<const cv::Mat*, 2>&) {
-  PerFinger<bool> doubtful = {};
-  bool any = false;
-  for (int f = 0; f < kNumFingers; ++f) {
-    doubtful[f] = !views[0].active[f] || !views[1].active[f];
-    if (!doubtful[f]) {
-      const auto point = Triangulate(cameras, views[0].region[f], views[1].region[f]);
-      const double reach = 0.03 + 3 * fingers[f].v_W.norm();
-      doubtful[f] = !point ||
-                    EpipolarDistance(cameras, views[0].region[f], views[1].region[f]) >
-                        options.max_epipolar_px ||
-                    (point->p_WQ - fingers[f].p_W - fingers[f].v_W).norm() > reach;
-    }
-  }
-  for (int v = 0; v < 2; ++v) {
-    // Out of order: neighbours that are on the wrong sides of each other.
-    for (int f = 1; f < kNumFingers; ++f) {
-      PerFinger<bool> pair = {};
-      pair[f - 1] = views[v].active[f - 1];
-      pair[f] = views[v].active[f];
-      if (!InFingerOrder(views[v].region, pair, PalmPixel(v), turn[v])) {
-        doubtful[f - 1] = doubtful[f] = true;
-      }
-    }
-  }
-  for (int f = 0; f < kNumFingers; ++f) any = any || doubtful[f];
-  if (!any) return;
-
-  // Cap pixels that no trusted finger claims.
-  std::array<std::vector<MarkerBlob>, 2> blobs;
-  for (int v = 0; v < 2; ++v) {
-    cv::Mat rest = cv::Mat::zeros(views[v].likelihood.size(), CV_8UC1);
-    views[v].likelihood(views[v].roi).copyTo(rest(views[v].roi));
-    double smallest = 1e9;
-    for (int f = 0; f < kNumFingers; ++f) {
-      const double r = RadiusPx(v, fingers[f].p_W);
-      smallest = std::min(smallest, std::numbers::pi * r * r);
-      if (doubtful[f]) continue;
-      const Eigen::Vector2d& c = views[v].region[f];
-      const int reach = static_cast<int>(std::ceil(1.45 * r));
-      const cv::Rect box = cv::Rect(static_cast<int>(c.x()) - reach,
-                                    static_cast<int>(c.y()) - reach, 2 * reach + 1, 2 * reach + 1) &
-                           Whole(v);
-      for (int y = box.y; y < box.y + box.height; ++y) {
-        for (int x = box.x; x < box.x + box.width; ++x) {
-          if (std::hypot(x - c.x(), y - c.y()) <= 1.45 * r) rest.at<std::uint8_t>(y, x) = 0;
-        }
-      }
-    }
-    blobs[v] = SegmentMarkers(rest, 0.5 * options.min_mass * smallest, views[v].roi);
-    if (blobs[v].size() > 8) blobs[v].resize(8);
-  }
-
-  // All ways to give the doubtful fingers a pair of blobs, or none; the cheapest.
-  struct Choice {
-    int left, right;
-    Eigen::Vector3d p_W;
-    double cost;
-  };
-  PerFinger<std::vector<Choice>> choices;
-  for (int f = 0; f < kNumFingers; ++f) {
-    if (!doubtful[f]) continue;
-    const Eigen::Vector3d expected = fingers[f].p_W + fingers[f].v_W;
-    const double reach = options.search_radius * (1 + 0.25 * std::min(12, fingers[f].lost_frames)) +
-                         2 * fingers[f].v_W.norm();
-    for (int i = 0; i < static_cast<int>(blobs[0].size()); ++i) {
-      for (int j = 0; j < static_cast<int>(blobs[1].size()); ++j) {
-        const Eigen::Vector2d &l = blobs[0][i].centre, &r = blobs[1][j].centre;
-        const double off = EpipolarDistance(cameras, l, r);
-        if (off > options.max_epipolar_px) continue;
-        const auto point = Triangulate(cameras, l, r);
-        if (!point) continue;
-        const double distance = (point->p_WQ - expected).norm() / reach;
-        if (distance > 1) continue;
-        choices[f].push_back({i, j, point->p_WQ, distance * distance + 0.05 * off * off});
-      }
-    }
-  }
-  PerFinger<const Choice*> current = {}, best = {};
-  double best_cost = 1e9;
-  const auto assign = [&](auto&& self, int f, double cost) -> void {
-    if (cost >= best_cost) return;
-    if (f == kNumFingers) {
-      for (int v = 0; v < 2; ++v) {
-        Regions regions = views[v].region;
-        PerFinger<bool> seen = {};
-        for (int g = 0; g < kNumFingers; ++g) {
-          seen[g] = doubtful[g] ? current[g] != nullptr : true;
-          if (current[g] != nullptr) {
-            regions[g] = blobs[v][v == 0 ? current[g]->left : current[g]->right].centre;
-          }
-        }
-        if (!InFingerOrder(regions, seen, PalmPixel(v), turn[v])) cost += 1;
-      }
-      if (cost < best_cost) {
-        best_cost = cost;
-        best = current;
-      }
-      return;
-    }
-    if (!doubtful[f]) return self(self, f + 1, cost);
-    for (const Choice& choice : choices[f]) {
-      bool taken = false;
-      for (int g = 0; g < f; ++g) {
-        taken = taken || (current[g] != nullptr &&
-                          (current[g]->left == choice.left || current[g]->right == choice.right));
-      }
-      if (taken) continue;
-      current[f] = &choice;
-      self(self, f + 1, cost + choice.cost);
-    }
-    current[f] = nullptr;
-    self(self, f + 1, cost + 2);  // left unseen
-  };
-  assign(assign, 0, 0);
-
-  for (int v = 0; v < 2; ++v) {
-    View& view = views[v];
-    PerFinger<double> window;
-    for (int f = 0; f < kNumFingers; ++f) {
-      window[f] = 1.3 * RadiusPx(v, fingers[f].p_W);
-      if (!doubtful[f]) continue;
-      view.active[f] = best[f] != nullptr;
-      if (best[f] == nullptr) continue;
-      view.region[f] = blobs[v][v == 0 ? best[f]->left : best[f]->right].centre;
-      view.motion[f].setZero();
-      for (Regions& particle : view.particles.regions) particle[f] = view.region[f];
-    }
-    const MeanShiftResult modes = MeanShift(view.likelihood, view.region, view.active, window);
-    for (int f = 0; f < kNumFingers; ++f) {
-      if (view.active[f]) view.region[f] = modes.centre[f];
-      view.mass[f] = modes.mass[f];
-    }
-    Judge(v);
-  }
-}
-
-// The finger's direction: in the picture plane away from the skin next to the cap, in depth as
-// before.
-Eigen::Vector3d FingertipTracker::Impl::ExpectedAxis(const std::array<const cv::Mat*, 2>& pictures,
-                                                     int f) const {
-  const Eigen::Vector3d& before = fingers[f].axis_W;
-  Eigen::Vector3d across = Eigen::Vector3d::Zero();
-  for (int v = 0; v < 2; ++v) {
-    if (!views[v].active[f]) continue;
-    const double r = RadiusPx(v, fingers[f].p_W);
-    const Eigen::Vector2d away = -SkinDirection(*pictures[v], skin, views[v].region[f], r);
-    across += 0.5 * cameras.view(v).X_WC.linear() * Eigen::Vector3d(away.x(), away.y(), 0);
-  }
-  const double strength = across.norm();
-  if (strength < 0.2) return before;
-  const Eigen::Vector3d forward = cameras.left.X_WC.linear().col(2);
-  // Fingers of a palm that faces the camera bend towards it: a weak pull, which outlines overrule.
-  const double depth = 0.85 * before.dot(forward) + 0.15 * kUsualDepth;
-  const Eigen::Vector3d flat = across - across.dot(forward) * forward;
-  const Eigen::Vector3d seen =
-      depth * forward + std::sqrt(std::max(0.0, 1 - depth * depth)) * flat.normalized();
-  return (before + std::min(1.0, 1.5 * strength) * seen).normalized();
-}
-
-// Positions in space from the regions of both views.
-TrackedFrame FingertipTracker::Impl::Measure(const std::array<const cv::Mat*, 2>& pictures) {
-  TrackedFrame frame;
-  for (int f = 0; f < kNumFingers; ++f) {
-    TrackedFinger& out = frame.fingers[f];
-    for (int v = 0; v < 2; ++v) {
-      if (views[v].active[f]) out.pixel[v] = views[v].region[f];
-    }
-    if (!out.pixel[0] || !out.pixel[1]) continue;
-    const auto point = Triangulate(cameras, *out.pixel[0], *out.pixel[1]);
-    if (!point) continue;
-    out.residual_px = EpipolarDistance(cameras, *out.pixel[0], *out.pixel[1]);
-    if (out.residual_px > options.max_epipolar_px) continue;
-    out.p_W = point->p_WQ;
-    out.axis_W = fingers[f].axis_W;
-    double agreement = 1;
-    if (options.fit_outlines) {
-      std::array<CapContour, 2> contours;
-      for (int v = 0; v < 2; ++v) {
-        const double r = RadiusPx(v, *out.p_W);
-        contours[v] = TraceCap(*pictures[v], colour, *out.pixel[v],
-                               1.1 * r * cap.full_length() / cap.radius + 4);
-      }
-      const auto fit = FitCap(cameras, contours, ShapeOf(f), *out.p_W, ExpectedAxis(pictures, f));
-      // A fit that wanders off was led by something else than this cap.
-      if (fit && (fit->p_W - *out.p_W).norm() < 0.025) {
-        out.p_W = fit->p_W;
-        out.axis_W = fit->axis_W;
-        agreement = std::min(1.0, 1.6 * std::min(fit->agreement[0], fit->agreement[1]));
-        for (int v = 0; v < 2; ++v) out.pixel[v] = Project(cameras.view(v), fit->p_W);
-        // A running mean over the first frames in which nearly the whole outline is seen.
-        FingerState& state = fingers[f];
-        if (agreement > 0.9 && state.radius_count < kRadiusFrames) {
-          const double radius = std::clamp(fit->radius, 0.85 * cap.radius, 1.15 * cap.radius);
-          state.radius += (radius - state.radius) / (2 + state.radius_count++);
-        }
-      } else {
-        agreement = 0.3;
-      }
-    }
-    const double mass = std::min(views[0].mass[f], views[1].mass[f]);
-    const double similarity = std::min(views[0].similarity[f], views[1].similarity[f]);
-    const double together = std::exp(-0.5 * std::pow(out.residual_px / options.max_epipolar_px, 2));
-    out.confidence = std::min(1.0, 1.2 * mass) * similarity * together * (0.4 + 0.6 * agreement);
-  }
-  return frame;
-}
-
 TrackedFrame FingertipTracker::Impl::Update(const cv::Mat& left, const cv::Mat& right,
                                             RandomEngine& engine) {
   ThrowUnless(started, "fingertip tracker was not started");
@@ -468,7 +180,7 @@ TrackedFrame FingertipTracker::Impl::Update(const cv::Mat& left, const cv::Mat& 
     CheckSize(*pictures[v], v);
     TrackView(v, *pictures[v], engine);
   }
-  Search(pictures);
+  Search();
   const TrackedFrame frame = Measure(pictures);
 
   // The hand's common motion carries what is not seen.

@@ -1,0 +1,199 @@
+#include "vision/fingertip_tracker_impl.h"
+
+namespace springgrasp {
+
+using namespace tracker_internal;  // NOLINT: the tracker's own names
+
+// Lost, not where its past says, seen by the views in places that do not belong together, or on the
+// wrong side of a neighbour.
+PerFinger<bool> FingertipTracker::Impl::FindDoubtful() const {
+  PerFinger<bool> doubtful = {};
+  for (int f = 0; f < kNumFingers; ++f) {
+    doubtful[f] = !views[0].active[f] || !views[1].active[f];
+    if (doubtful[f]) continue;
+    const auto point = Triangulate(cameras, views[0].region[f], views[1].region[f]);
+    const double reach = 0.03 + 3 * fingers[f].v_W.norm();
+    doubtful[f] = !point ||
+                  EpipolarDistance(cameras, views[0].region[f], views[1].region[f]) >
+                      options.max_epipolar_px ||
+                  (point->p_WQ - fingers[f].p_W - fingers[f].v_W).norm() > reach;
+  }
+  for (int v = 0; v < 2; ++v) {
+    for (int f = 1; f < kNumFingers; ++f) {
+      PerFinger<bool> pair = {};
+      pair[f - 1] = views[v].active[f - 1];
+      pair[f] = views[v].active[f];
+      if (!InFingerOrder(views[v].region, pair, PalmPixel(v), turn[v])) {
+        doubtful[f - 1] = doubtful[f] = true;
+      }
+    }
+  }
+  return doubtful;
+}
+
+// Lets all regions compete again, the doubtful ones from where their points in space should be now.
+void FingertipTracker::Impl::Reseed(const PerFinger<bool>& doubtful) {
+  for (int v = 0; v < 2; ++v) {
+    View& view = views[v];
+    PerFinger<double> window;
+    for (int f = 0; f < kNumFingers; ++f) {
+      window[f] = 1.3 * RadiusPx(v, fingers[f].p_W);
+      if (!doubtful[f]) continue;
+      const auto pixel = Project(cameras.view(v), fingers[f].p_W + fingers[f].v_W);
+      view.active[f] = pixel && view.roi.contains(cv::Point(static_cast<int>(pixel->x()),
+                                                            static_cast<int>(pixel->y())));
+      if (view.active[f]) view.region[f] = *pixel;
+    }
+    const MeanShiftResult modes = MeanShift(view.likelihood, view.region, view.active, window);
+    view.mass = modes.mass;
+    view.region = modes.centre;
+    Judge(v);
+  }
+  DropCollisions();
+}
+
+// Two regions that share one cap's pixels: the one that is farther from where it should be goes.
+void FingertipTracker::Impl::DropCollisions() {
+  for (int f = 0; f < kNumFingers; ++f) {
+    for (int g = 0; g < f; ++g) {
+      for (int v = 0; v < 2; ++v) {
+        View& view = views[v];
+        if (!view.active[f] || !view.active[g]) continue;
+        const double r = RadiusPx(v, fingers[f].p_W);
+        const double distance = (view.region[f] - view.region[g]).norm();
+        // Two halves of one cap are less than a radius apart and together no larger than it.
+        if (distance > 1.5 * r || view.mass[f] + view.mass[g] > kOneCap) continue;
+        const auto off = [&](int finger) {
+          const auto expected = Project(cameras.view(v), fingers[finger].p_W + fingers[finger].v_W);
+          const double lost = 4.0 * std::min(5, fingers[finger].lost_frames);
+          return (expected ? (*expected - view.region[finger]).norm() : 1e9) + lost;
+        };
+        const int loser = off(f) > off(g) ? f : g;
+        view.active[loser] = false;
+        view.mass[loser] = view.similarity[loser] = 0;
+      }
+    }
+  }
+}
+
+// Fingers that are lost, out of order, or differ between the views are sought anew: first from
+// where they should be, then among the cap pixels that no other finger claims.
+void FingertipTracker::Impl::Search() {
+  DropCollisions();
+  PerFinger<bool> doubtful = FindDoubtful();
+  const auto any = [&] { return std::count(doubtful.begin(), doubtful.end(), true) > 0; };
+  if (!any()) return;
+  Reseed(doubtful);
+  doubtful = FindDoubtful();
+  if (!any()) return;
+
+  // Cap pixels that no trusted finger claims.
+  std::array<std::vector<MarkerBlob>, 2> blobs;
+  for (int v = 0; v < 2; ++v) {
+    cv::Mat rest = cv::Mat::zeros(views[v].likelihood.size(), CV_8UC1);
+    views[v].likelihood(views[v].roi).copyTo(rest(views[v].roi));
+    double smallest = 1e9;
+    for (int f = 0; f < kNumFingers; ++f) {
+      const double r = RadiusPx(v, fingers[f].p_W);
+      smallest = std::min(smallest, std::numbers::pi * r * r);
+      if (doubtful[f]) continue;
+      const Eigen::Vector2d& c = views[v].region[f];
+      const int reach = static_cast<int>(std::ceil(1.45 * r));
+      const cv::Rect box = cv::Rect(static_cast<int>(c.x()) - reach,
+                                    static_cast<int>(c.y()) - reach, 2 * reach + 1, 2 * reach + 1) &
+                           Whole(v);
+      for (int y = box.y; y < box.y + box.height; ++y) {
+        for (int x = box.x; x < box.x + box.width; ++x) {
+          if (std::hypot(x - c.x(), y - c.y()) <= 1.45 * r) rest.at<std::uint8_t>(y, x) = 0;
+        }
+      }
+    }
+    blobs[v] = SegmentMarkers(rest, 0.5 * options.min_mass * smallest, views[v].roi);
+    if (blobs[v].size() > 8) blobs[v].resize(8);
+  }
+
+  // All ways to give the doubtful fingers a pair of blobs, or none; the cheapest.
+  struct Choice {
+    int left, right;
+    Eigen::Vector3d p_W;
+    double cost;
+  };
+  PerFinger<std::vector<Choice>> choices;
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (!doubtful[f]) continue;
+    const Eigen::Vector3d expected = fingers[f].p_W + fingers[f].v_W;
+    const double reach = options.search_radius * (1 + 0.25 * std::min(12, fingers[f].lost_frames)) +
+                         2 * fingers[f].v_W.norm();
+    for (int i = 0; i < static_cast<int>(blobs[0].size()); ++i) {
+      for (int j = 0; j < static_cast<int>(blobs[1].size()); ++j) {
+        const Eigen::Vector2d &l = blobs[0][i].centre, &r = blobs[1][j].centre;
+        const double off = EpipolarDistance(cameras, l, r);
+        if (off > options.max_epipolar_px) continue;
+        const auto point = Triangulate(cameras, l, r);
+        if (!point) continue;
+        const double distance = (point->p_WQ - expected).norm() / reach;
+        if (distance > 1) continue;
+        choices[f].push_back({i, j, point->p_WQ, distance * distance + 0.05 * off * off});
+      }
+    }
+  }
+  PerFinger<const Choice*> current = {}, best = {};
+  double best_cost = 1e9;
+  const auto assign = [&](auto&& self, int f, double cost) -> void {
+    if (cost >= best_cost) return;
+    if (f == kNumFingers) {
+      for (int v = 0; v < 2; ++v) {
+        Regions regions = views[v].region;
+        PerFinger<bool> seen = {};
+        for (int g = 0; g < kNumFingers; ++g) {
+          seen[g] = doubtful[g] ? current[g] != nullptr : true;
+          if (current[g] != nullptr) {
+            regions[g] = blobs[v][v == 0 ? current[g]->left : current[g]->right].centre;
+          }
+        }
+        if (!InFingerOrder(regions, seen, PalmPixel(v), turn[v])) cost += 1;
+      }
+      if (cost < best_cost) {
+        best_cost = cost;
+        best = current;
+      }
+      return;
+    }
+    if (!doubtful[f]) return self(self, f + 1, cost);
+    for (const Choice& choice : choices[f]) {
+      bool taken = false;
+      for (int g = 0; g < f; ++g) {
+        taken = taken || (current[g] != nullptr &&
+                          (current[g]->left == choice.left || current[g]->right == choice.right));
+      }
+      if (taken) continue;
+      current[f] = &choice;
+      self(self, f + 1, cost + choice.cost);
+    }
+    current[f] = nullptr;
+    self(self, f + 1, cost + 2);  // left unseen
+  };
+  assign(assign, 0, 0);
+
+  for (int v = 0; v < 2; ++v) {
+    View& view = views[v];
+    PerFinger<double> window;
+    for (int f = 0; f < kNumFingers; ++f) {
+      window[f] = 1.3 * RadiusPx(v, fingers[f].p_W);
+      if (!doubtful[f]) continue;
+      view.active[f] = best[f] != nullptr;
+      if (best[f] == nullptr) continue;
+      view.region[f] = blobs[v][v == 0 ? best[f]->left : best[f]->right].centre;
+      view.motion[f].setZero();
+      for (Regions& particle : view.particles.regions) particle[f] = view.region[f];
+    }
+    const MeanShiftResult modes = MeanShift(view.likelihood, view.region, view.active, window);
+    for (int f = 0; f < kNumFingers; ++f) {
+      if (view.active[f]) view.region[f] = modes.centre[f];
+      view.mass[f] = modes.mass[f];
+    }
+    Judge(v);
+  }
+}
+
+}  // namespace springgrasp

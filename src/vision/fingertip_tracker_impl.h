@@ -1,0 +1,110 @@
+// Inside of the fingertip tracker, shared by its sources only.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "base/error.h"
+#include "vision/fingertip_tracker.h"
+#include "vision/mean_shift.h"
+#include "vision/skin_mask.h"
+
+namespace springgrasp {
+namespace tracker_internal {
+
+// One camera's instance of the paper's tracker.
+struct View {
+  cv::Mat likelihood, bins;  // whole picture; valid in `roi`
+  cv::Rect roi;
+  ParticleSet particles;
+  Regions region;  // mode of each finger, px
+  Regions motion;  // last displacement, px per frame
+  PerFinger<bool> active = {};
+  PerFinger<double> mass = {};        // found over expected cap pixels
+  PerFinger<double> similarity = {};  // of the colour
+};
+
+inline constexpr double kOneCap =
+    1.45;  // pixels of one cap seen from the side, over those of a disc
+inline constexpr int kRadiusFrames = 20;  // over which a cap's size is averaged
+
+inline constexpr double kHintShare = 0.5;     // of the hand fit in a finger's direction
+inline constexpr double kUsualDepth = -0.45;  // of a finger's direction along the optical axis
+
+// A finger's state between the views.
+struct FingerState {
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
+  Eigen::Vector3d v_W = Eigen::Vector3d::Zero();  // m per frame
+  Eigen::Vector3d axis_W = Eigen::Vector3d::UnitX();
+  int lost_frames = 0;
+  double radius = 0;  // m, of this cap
+  int radius_count = 0;
+};
+
+}  // namespace tracker_internal
+
+struct FingertipTracker::Impl {
+  StereoCameras cameras;
+  TrackerOptions options;
+  MarkerColour colour;
+  CapShape cap;
+  SkinModel skin;
+  bool started = false;
+  std::array<tracker_internal::View, 2> views;
+  PerFinger<tracker_internal::FingerState> fingers;
+  Eigen::Vector3d p_WPalm = Eigen::Vector3d::Zero();
+  std::array<int, 2> turn = {0, 0};
+
+  Impl(const StereoCameras& c, const TrackerOptions& o)
+      : cameras(c), options(o), colour(MakeMarkerColour(o.colour)), cap(o.cap) {
+    for (int v = 0; v < 2; ++v) {
+      const CameraModel& camera = cameras.view(v);
+      views[v].likelihood = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
+      views[v].bins = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
+    }
+  }
+
+  void CheckSize(const cv::Mat& picture, int v) const {
+    const CameraModel& camera = cameras.view(v);
+    ThrowUnless(
+        picture.type() == CV_8UC3 && picture.cols == camera.width && picture.rows == camera.height,
+        "{} picture is {}x{}, expected {}x{} BGR as its camera is calibrated for",
+        v == 0 ? "left" : "right", picture.cols, picture.rows, camera.width, camera.height);
+  }
+
+  cv::Rect Whole(int v) const { return {0, 0, cameras.view(v).width, cameras.view(v).height}; }
+
+  double DepthOf(int v, const Eigen::Vector3d& p_W) const {
+    const Pose& X_WC = cameras.view(v).X_WC;
+    return std::max(0.05, X_WC.linear().col(2).dot(p_W - X_WC.translation()));
+  }
+
+  double RadiusPx(int v, const Eigen::Vector3d& p_W) const {
+    return cameras.view(v).fx * cap.radius / DepthOf(v, p_W);
+  }
+
+  // The shape of finger f's cap: caps of one kind differ a little in size.
+  CapShape ShapeOf(int f) const {
+    CapShape shape = cap;
+    shape.radius = fingers[f].radius;
+    return shape;
+  }
+
+  std::optional<TrackedFrame> Start(const cv::Mat& left, const cv::Mat& right);
+  TrackedFrame Update(const cv::Mat& left, const cv::Mat& right, RandomEngine& engine);
+  void TrackView(int v, const cv::Mat& bgr, RandomEngine& engine);
+  void Judge(int v);
+  void Search();
+  PerFinger<bool> FindDoubtful() const;
+  void Reseed(const PerFinger<bool>& doubtful);
+  void DropCollisions();
+  void Label(const PerFinger<Eigen::Vector3d>& p_WCaps, const PerFinger<int>& order);
+  TrackedFrame Measure(const std::array<const cv::Mat*, 2>& pictures);
+  Eigen::Vector2d PalmPixel(int v) const;
+  Eigen::Vector3d ExpectedAxis(const std::array<const cv::Mat*, 2>& pictures, int f) const;
+};
+
+}  // namespace springgrasp
