@@ -51,7 +51,8 @@ std::optional<TrackedFrame> FingertipTracker::Impl::Start(const cv::Mat& left,
     caps_right[i] = blobs[1][(*chosen)[i].right].centre;
   }
   LearnMarkerColour(left, mask, colour);
-  if (cap.radius <= 0) cap.radius = radius;
+  // A thimble seen from somewhere between its side and its tip covers a fifth more than a disc.
+  if (cap.radius <= 0) cap.radius = radius / std::sqrt(1.2);
 
   // The palm: widest place of the skin near the caps, else the middle of the caps' arc.
   skin = LearnSkin(left, colour, cap_px, radius_px);

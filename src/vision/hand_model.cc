@@ -9,8 +9,9 @@
 namespace springgrasp {
 namespace {
 
-constexpr double kFingerRadius = 0.008;  // m, of an adult's fingers
-constexpr double kPalmRadius = 0.011;    // m, half the thickness of a palm
+constexpr double kFingerRadius = 0.0088;  // m, of an adult's fingers
+constexpr double kTipRadius = 0.0095;    // m, with its cap
+constexpr double kPalmRadius = 0.012;    // m, half the thickness of a palm
 constexpr double kBallSpacing = 0.014;   // m
 
 void AddBone(HandModel& model, int node, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
@@ -34,9 +35,10 @@ HandModel MakeHandModel(const KinematicTree& tree, const Eigen::VectorXd& rest) 
   PerFinger<int> knuckle = {};  // node where the finger leaves the palm
   for (int f = 0; f < kNumFingers; ++f) {
     model.tip[f] = tree.FrameIndex("mmm_" + std::string(kFingerNames[f]) + "_tip");
-    // Bones from the tip inwards, up to the palm.
+    // Bones from the tip inwards, up to the palm. The tip's own ball is a cap's.
     int node = tree.frames[model.tip[f]].node;
     Eigen::Vector3d end = tree.frames[model.tip[f]].X_BF.translation();
+    model.balls.push_back({node, end, kTipRadius});
     while (node >= 0) {
       const int parent = tree.nodes[node].parent;
       if (end.norm() > 0.005) AddBone(model, node, Eigen::Vector3d::Zero(), end, kFingerRadius);
@@ -58,18 +60,26 @@ HandModel MakeHandModel(const KinematicTree& tree, const Eigen::VectorXd& rest) 
   // Palm: rows from the wrist to the knuckles at joint angles zero, fixed to the root.
   std::vector<Pose> X_HB;
   ForwardKinematics(tree, Eigen::VectorXd::Zero(n), X_HB);
+  const auto row_start = [&](const Eigen::Vector3d& p_HK) {
+    return Eigen::Vector3d(0.012, 0.6 * p_HK.y(), 0);
+  };
   for (int f = kIndex; f < kNumFingers; ++f) {
     const Eigen::Vector3d p_HK = X_HB[knuckle[f]].translation();
-    AddBone(model, 0, 0.15 * p_HK, p_HK, kPalmRadius);
+    AddBone(model, 0, row_start(p_HK), p_HK, kPalmRadius);
     if (f == kIndex) continue;
-    const Eigen::Vector3d p_HL = X_HB[knuckle[f - 1]].translation();
-    AddBone(model, 0, 0.15 * (p_HK + p_HL) / 2, (p_HK + p_HL) / 2, kPalmRadius);
+    const Eigen::Vector3d between = (p_HK + X_HB[knuckle[f - 1]].translation()) / 2;
+    AddBone(model, 0, row_start(between), between, kPalmRadius);
   }
-  // Ball of the thumb: between its base, its first joint and the palm.
+  // Balls of thumb and pinkie, heel of the hand: y of H points to the thumb on a right hand.
   const Eigen::Vector3d p_HT = X_HB[knuckle[kThumb]].translation();
+  const double side = p_HT.y() >= 0 ? 1 : -1;
   AddBone(model, 0, p_HT, 0.6 * X_HB[knuckle[kIndex]].translation(), kPalmRadius);
+  model.balls.push_back({0, {0.034, 0.016 * side, -0.004}, 0.0165});
+  model.balls.push_back({0, {0.038, -0.021 * side, -0.004}, 0.0165});
+  model.balls.push_back({0, {0.004, 0.009, 0}, 0.0175});
+  model.balls.push_back({0, {0.004, -0.009, 0}, 0.0175});
   // Forearm: explains skin beyond the wrist. x of H points to the middle knuckle.
-  for (int i = 1; i <= 5; ++i) model.balls.push_back({0, {-0.02 * i, 0, 0}, 0.026});
+  for (int i = 1; i <= 5; ++i) model.balls.push_back({0, {-0.02 * i, 0, 0}, 0.027});
 
   model.rest.resize(n);
   model.rest_sigma.resize(n);
