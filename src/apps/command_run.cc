@@ -44,21 +44,28 @@ std::string MakeFolderAbsolute(const std::string& override_text) {
   return key + "'" + fs::canonical(folder).string() + "'";
 }
 
+// Where the videos and pictures of a trial lie, one line for each.
+void PrintPictures(const StoredTrial& trial, const std::string& directory) {
+  std::vector<std::string> files;
+  std::error_code ignored;
+  for (const auto& entry :
+       fs::directory_iterator(fs::path(directory) / "trials" / trial.plan.id, ignored)) {
+    const auto extension = entry.path().extension();
+    if (extension == ".mp4" || extension == ".png") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  std::string name = CaseLabel(trial.plan);
+  if (trial.plan.demonstration != "synthesised") name += " " + trial.plan.demonstration;
+  for (const std::string& file : files) fmt::print("{}: {}\n", name, file);
+}
+
 void PrintResults(ResultStore& store) {
   const std::vector<StoredTrial> trials = store.Trials();
   fmt::print("{}", OutcomeTable(trials));
   const std::string recordings = RecordingTable(trials);
   if (!recordings.empty()) fmt::print("\n{}", recordings);
-  std::vector<std::string> videos;
-  std::error_code ignored;
-  for (const auto& entry :
-       fs::recursive_directory_iterator(fs::path(store.directory()) / "trials", ignored)) {
-    const auto extension = entry.path().extension();
-    if (extension == ".mp4" || extension == ".png") videos.push_back(entry.path());
-  }
-  std::sort(videos.begin(), videos.end());
   fmt::print("\nresults: {}\n", (fs::path(store.directory()) / "results.sqlite").string());
-  for (const std::string& video : videos) fmt::print("video:   {}\n", video);
+  for (const StoredTrial& trial : trials) PrintPictures(trial, store.directory());
 }
 
 int Run(Options options) {

@@ -79,6 +79,17 @@ double Seen(const DemonstratorHand& hand, const Instant& instant, const HandMoti
   return std::clamp(0.5 + clearance / (2 * hand.tip_radius), 0.0, 1.0);
 }
 
+// How well neighbouring caps are told apart along a direction of view: 1 if none overlap, 0 if each
+// hides the next.
+double Separation(const PerFinger<Eigen::Vector3d>& tips, const Eigen::Vector3d& view) {
+  constexpr double kCapsApart = 0.022;  // m, two radii of 10 mm and a gap
+  double sum = 0;
+  for (int f = 0; f + 1 < kNumFingers; ++f) {
+    sum += std::min(1.0, view.cross(tips[f + 1] - tips[f]).norm() / kCapsApart);
+  }
+  return sum / (kNumFingers - 1);
+}
+
 class Search {
  public:
   Search(const DemonstratorHand& hand, const HandMotion& motion, const StereoCameras& eyes,
@@ -154,15 +165,15 @@ class Search {
     for (const Instant& i : instants_) {
       const Eigen::Vector3d to_eyes = (p_ME - i.wrist).normalized();
       angle += std::acos(std::clamp(i.palm_normal.dot(to_eyes), -1.0, 1.0));
-      // Thumb and index beside each other, not one before the other: they meet in every grasp.
-      apart += to_eyes.cross((i.shape.tips[kIndex] - i.shape.tips[kThumb]).normalized()).norm();
+      apart += Separation(i.shape.tips, to_eyes);
     }
     place.palm_deg = angle / double(instants_.size()) * 180 / M_PI;
     double others = 0;
     CountSeen(X_MW, place.visible, others);
     // Nearest depth with margin, palm to the eyes within some 30 degrees, most tips seen.
     const double up = X_WM.linear().row(2).dot(motion_.up);
-    const double score = 100 * place.visible + 25 * others + 40 * apart / double(instants_.size()) -
+    const double score = 100 * place.visible + 50 * others +
+                         100 * apart / double(instants_.size()) -
                          3 * std::max(0.0, options_.margin_px - place.margin_px) -
                          1.0 * std::max(0.0, place.palm_deg - 30) -
                          30 * std::abs(depth - (options_.near + options_.far) / 2) + 5 * up;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "control/grip.h"
 #include "experiment/arm_reference.h"
@@ -18,6 +19,7 @@ constexpr double kLostAfter = 0.2;       // s without any hand contact: the obje
 constexpr double kLostBeyond = 0.08;     // m moved in the hand: the object is lost
 constexpr double kMinRise = 0.5;         // of the lift height, that the object must have risen
 constexpr double kOpposedWindow = 0.02;  // s, to see the first opposed contact
+constexpr double kHoldFrom = 0.7;        // of the grip phase, when the fingers have settled
 constexpr double kGripWindow = 0.25;     // s, to see whether a finger touches at the end of grip
 
 double TiltDeg(const Pose& a, const Pose& b) {
@@ -109,22 +111,24 @@ class Performer {
     if (load > 0) target.feedforward_torque = load * LoadTorque(state);
     command.arm_torque = ControlArm(options_.arm, target, state, dt, arm_memory_);
     HandTarget hand_target;
-    hand_target.q = hand_q;
+    hand_target.q = hand_planned_ = hand_q;
     if (grip > 0) {
       hand_target.torque = grip * GripTorque(state);
-      hand_target.integrate = false;
+      // Once the grip has settled its posture is held, against slow pushes too.
+      hand_target.integrate = q_held_.has_value();
+      if (q_held_) hand_target.q = *q_held_;
       if (plan_.type == "power") {
         // Enclosing fingers yield to the object's shape: no stiffness about the planned posture.
         for (int f = 0; f < kNumFingers; ++f) {
           if (!plan_.involved[f]) continue;
           for (int j = 1 + 2 * f; j <= 2 + 2 * f; ++j) {
-            hand_target.q[j] = (1 - grip) * hand_q[j] + grip * state.hand_q[j];
+            hand_target.q[j] = (1 - grip) * hand_target.q[j] + grip * state.hand_q[j];
           }
         }
       }
     }
-    command.valve_pressure =
-        ControlHand(hand_model_, options_.hand, hand_target, state, dt, hand_memory_);
+    command.valve_pressure = ControlHand(hand_model_, q_held_ ? options_.grip.hand : options_.hand,
+                                         hand_target, state, dt, hand_memory_);
     robot_.Write(command, simulation_);
     simulation_.Step();
     if (simulation_.diverged()) {
@@ -244,6 +248,7 @@ class Performer {
     }
     sample.palm_normal = load.palm_normal;
     sample.state = state;
+    sample.hand_planned = hand_planned_;
     sample.command = command;
     performance_.trajectory.push_back(sample);
   }
@@ -305,6 +310,7 @@ class Performer {
     for (long i = 0; i < StepsFor(criteria_.grip); ++i) {
       const double t = static_cast<double>(i) * simulation_.timestep();
       if (t <= criteria_.grip - kGripWindow) window_.Clear();
+      if (!q_held_ && t >= kHoldFrom * criteria_.grip) q_held_ = robot_.Read(simulation_).hand_q;
       if (!Step(Rest(plan_.arm.back()), plan_.hand.back(), std::clamp(t / ramp, 1e-3, 1.0), 0)) {
         return false;
       }
@@ -425,6 +431,8 @@ class Performer {
   Pose X_WO_start_, X_HO_grip_, planned_;
   TrialEvent slip_event_;
   bool opposed_ = false, slipped_ = false, over_ = false;
+  std::optional<HandVector> q_held_;
+  HandVector hand_planned_ = HandVector::Zero();
   double untouched_ = 0, next_sample_ = 0;
 };
 

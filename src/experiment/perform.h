@@ -17,13 +17,25 @@
 
 namespace springgrasp {
 
+// A gripping hand is stiffer than a moving one: the closed chain damps it (tuned with the first
+// grasps, seeds below 1000).
+inline PneumaticGains StiffHold() {
+  PneumaticGains gains;
+  gains.stiffness = 1.0;
+  gains.integral = 2.0;
+  gains.damping = 0.04;
+  gains.max_integral = 0.25;
+  return gains;
+}
+
 struct GripOptions {
-  double acceleration = 20;         // m/s^2, that the grip shall withstand besides gravity
-  double safety = 2.0;              // of the fingertip grip force
-  double min_force = 2.5;           // N
-  double enclosing_pressure = 3.0;  // bar, of the involved fingers in a power grasp
-  double distal_ratio = 0.8;        // distal over proximal pressure in a power grasp
-  double ramp = 0.6;                // s, to full grip
+  double acceleration = 20;           // m/s^2, that the grip shall withstand besides gravity
+  double safety = 2.0;                // of the fingertip grip force
+  double min_force = 2.5;             // N
+  double enclosing_pressure = 3.0;    // bar, of the involved fingers in a power grasp
+  double distal_ratio = 0.8;          // distal over proximal pressure in a power grasp
+  PneumaticGains hand = StiffHold();  // once the grip has settled
+  double ramp = 0.6;                  // s, to full grip
 };
 
 struct PerformOptions {
@@ -41,9 +53,10 @@ struct TrajectorySample {
   Phase phase = Phase::kSettle;
   Pose X_WO, X_WH, X_WH_planned;
   PerFinger<Eigen::Vector3d> p_WF;
-  PerFinger<double> normal;  // N
-  double palm_normal = 0;    // N
-  RobotState state;          // mass and bias left out of files
+  PerFinger<double> normal;                      // N
+  double palm_normal = 0;                        // N
+  RobotState state;                              // mass and bias left out of files
+  HandVector hand_planned = HandVector::Zero();  // rad
   RobotCommand command;
 };
 

@@ -118,6 +118,7 @@ TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
   PlanRequest request;
   request.object = BelieveObject(believed, 0);
   request.table_height = scene.table.height;
+  request.table_edge = scene.table.position.y() - scene.table.size.y() / 2;
   request.arm_start = robot.Read(simulation).arm_q;
   request.criteria = options.criteria;
   const PlanResult plan = PlanGrasp(body, grasp, request);

@@ -9,12 +9,17 @@
 #include "kinematics/hand_ik.h"
 #include "kinematics/hand_motion.h"
 #include "kinematics/reach_plan.h"
+#include "motion/minimum_jerk.h"
 
 namespace springgrasp {
 namespace {
 
 // Slower reaches are tried where the arm is not fast enough for the demonstrated one.
-constexpr double kSlower[] = {1.0, 1.4, 2.0, 2.8};
+constexpr double kSlower[] = {1.0, 1.4, 2.0};
+constexpr double kClosed = 1.35;           // fraction of T at which the fingers are planned closed
+constexpr double kWaitClearance = 0.015;   // m, between object and waiting fingers
+constexpr double kMaxEarlyFlexion = 0.25;  // rad
+constexpr double kFastest = 1.5;           // s, reach of the robot's arm
 
 std::vector<KnownTips> TipsOf(const FingertipMotion& motion) {
   std::vector<KnownTips> tips(motion.samples.size());
@@ -63,6 +68,58 @@ HandMotionRequest RequestHandMotion(const FingertipMotion& motion,
   return request;
 }
 
+// The chambers fill slower than a human hand closes, so the robot's closing waits for its arm: the
+// fingers follow the human-like motion up to the widest aperture, hold it (opened at least as far
+// as `q_wait`) until the arm has arrived at T, and close on the contact posture until kClosed T.
+std::vector<Eigen::VectorXd> CloseAfterArrival(
+    const RobotHand& hand, const HandMotionResult& motion, const PerFinger<bool>& involved,
+    const Eigen::VectorXd& q_wait, const Eigen::VectorXd& q_contact, double dt, double T) {
+  // Widest aperture within the part of the reach where humans have it.
+  const auto at = [&](double t) {
+    return std::min(motion.q.size() - 1, static_cast<std::size_t>(std::lround(t / dt)));
+  };
+  std::size_t widest = at(0.3 * T);
+  double aperture = -1;
+  for (std::size_t i = at(0.3 * T); i <= at(0.75 * T); ++i) {
+    double sum = 0;
+    for (int f = kIndex; f < kNumFingers; ++f) {
+      if (involved[f]) sum += (motion.p_HF[i][f] - motion.p_HF[i][kThumb]).norm();
+    }
+    if (sum <= aperture) continue;
+    aperture = sum;
+    widest = i;
+  }
+  // Uninvolved fingers and the palm are in place when the hand arrives.
+  Eigen::VectorXd q_arrive = q_contact;
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (!involved[f]) continue;
+    for (const int j : {hand.fingers[f].j0, hand.fingers[f].j1}) {
+      q_arrive[j] = std::min(motion.q[widest][j], q_wait[j]);
+    }
+  }
+  // Thumb and fingers of this hand cross when they curl together: before the arrival none flexes
+  // much more than it will have to.
+  std::vector<Eigen::VectorXd> q = motion.q;
+  for (Eigen::VectorXd& posture : q) {
+    posture = posture.cwiseMin((q_arrive.array() + kMaxEarlyFlexion).matrix());
+  }
+  const std::vector<Eigen::VectorXd> human_like = q;
+  const double t_widest = static_cast<double>(widest) * dt;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const double t = static_cast<double>(i) * dt;
+    if (t <= T) {
+      // Leaves the human-like motion for the waiting posture from before the widest aperture on.
+      const double u = MinimumJerkPosition(
+          std::clamp((t - 0.5 * t_widest) / (0.9 * T - 0.5 * t_widest), 0.0, 1.0));
+      q[i] = (1 - u) * human_like[std::min(i, widest)] + u * q_arrive;
+    } else {
+      const double u = MinimumJerkPosition(std::clamp((t - T) / ((kClosed - 1) * T), 0.0, 1.0));
+      q[i] = (1 - u) * q_arrive + u * q_contact;
+    }
+  }
+  return q;
+}
+
 template <typename Vector>
 std::vector<Vector> Fixed(const std::vector<Eigen::VectorXd>& path) {
   return std::vector<Vector>(path.begin(), path.end());
@@ -83,7 +140,7 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
   const Pose X_WH_start = HandPose(body.arm, request.arm_start);
 
   for (const double slower : kSlower) {
-    generate.duration = slower * grasp.scales.T;
+    generate.duration = slower * std::max(kFastest, grasp.scales.T);
     generate.X_WO = request.object.X_WO;
     generate.X_WG_start.reset();
 
@@ -95,13 +152,14 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     result.posture = SolveContactPosture(body.hand, contacts);
     const Pose X_GH = result.posture.X_HG.inverse();
     const Eigen::VectorXd q_open =
-        OpenedPosture(body.hand, result.posture, generate.shape, motion.involved, 0.010);
+        OpenedPosture(body.hand, result.posture, generate.shape, motion.involved, 1.0);
 
     // The reach of G from where the robot's hand is, for an object turned by what it leaves free.
     const auto path = [&](const Pose& X_OF) {
       GenerateOptions turned = generate;
       turned.X_WO = request.object.X_WO * X_OF;
       turned.X_WG_start = X_WH_start * result.posture.X_HG;
+      turned.similar_reach = true;
       motion = GenerateMotion(grasp, turned);
       std::vector<Pose> X_OH;
       for (const FingertipMotionSample& sample : motion.samples) {
@@ -123,6 +181,8 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     reach.X_HG = result.posture.X_HG;
     reach.tilt_free = grasp.type != "power";
     reach.table_height = request.table_height;
+    reach.table_edge = request.table_edge;
+    reach.q_start = request.arm_start;
     reach.dt = dt;
     reach.T = motion.T;
     reach.q_hand = nominal_hand.q;
@@ -165,13 +225,17 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     plan.T = motion.T;
     plan.X_WH = planned.X_WH;
     plan.arm = Fixed<ArmVector>(planned.arm);
-    plan.hand = Fixed<HandVector>(hand.q);
+    const Eigen::VectorXd q_wait =
+        OpenedPosture(body.hand, result.posture, generate.shape, motion.involved, kWaitClearance);
+    const std::vector<Eigen::VectorXd> q_hand =
+        CloseAfterArrival(body.hand, hand, motion.involved, q_wait, result.posture.q, dt, motion.T);
+    plan.hand = Fixed<HandVector>(q_hand);
     plan.lift = Fixed<ArmVector>(planned.lift);
     for (int axis = 0; axis < 3; ++axis) plan.shake[axis] = Fixed<ArmVector>(planned.shake[axis]);
     plan.X_HO = result.posture.X_HO;
-    for (std::size_t i = 0; i < hand.p_HF.size(); ++i) {
-      PerFinger<Eigen::Vector3d> tips;
-      for (int f = 0; f < kNumFingers; ++f) tips[f] = planned.X_WH[i] * hand.p_HF[i][f];
+    for (std::size_t i = 0; i < q_hand.size(); ++i) {
+      PerFinger<Eigen::Vector3d> tips = TipPositions(body.hand, q_hand[i]);
+      for (Eigen::Vector3d& tip : tips) tip = planned.X_WH[i] * tip;
       plan.p_WF.push_back(tips);
     }
     result.plan = std::move(plan);

@@ -17,6 +17,7 @@ namespace springgrasp {
 struct PlanRequest {
   BelievedObject object;                    // its shape must be known
   double table_height = 0;                  // m
+  double table_edge = -1e9;                 // m, W's y where the table begins
   ArmVector arm_start = ArmVector::Zero();  // rad
   TrialCriteria criteria;                   // lift and shake are planned too
   double dt = 0.005;                        // s

@@ -32,6 +32,7 @@ std::string FormatTrajectory(const std::vector<TrajectorySample>& trajectory) {
   text += ",palm_normal_n";
   for (const auto joint : kArmJointNames) text += fmt::format(",arm_{}", joint);
   for (const auto joint : kHandJointNames) text += fmt::format(",hand_{}", joint);
+  for (const auto joint : kHandJointNames) text += fmt::format(",hand_planned_{}", joint);
   for (const auto valve : kValveNames) text += fmt::format(",{}_bar", valve);
   for (const auto joint : kArmJointNames) text += fmt::format(",{}_torque_nm", joint);
   for (const auto valve : kValveNames) text += fmt::format(",{}_command_bar", valve);
@@ -46,6 +47,7 @@ std::string FormatTrajectory(const std::vector<TrajectorySample>& trajectory) {
     text += fmt::format(",{:.4g}", s.palm_normal);
     Append(text, s.state.arm_q);
     Append(text, s.state.hand_q);
+    Append(text, s.hand_planned);
     Append(text, s.state.pressure);
     Append(text, s.command.arm_torque);
     Append(text, s.command.valve_pressure);

@@ -24,6 +24,18 @@ Vector3d MiddleOfContacts(const PerFinger<Contact>& contacts, const PerFinger<bo
   return 0.5 * (contacts[kThumb].p_OC + others / std::max(1, count));
 }
 
+// Turns and scales the position forcing of `reach` as its way from start to goal is turned and
+// scaled against that of `learned`.
+void TurnForcing(const PoseDmp& learned, PoseDmp& reach) {
+  const Vector3d from = (learned.motion.g - learned.motion.x0).head<3>();
+  const Vector3d to = (reach.motion.g - reach.motion.x0).head<3>();
+  if (from.norm() < 1e-6 || to.norm() < 1e-6) return;
+  const Eigen::Matrix3d turn =
+      Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix() * (to.norm() / from.norm());
+  reach.motion.weights.leftCols<3>() =
+      (learned.motion.weights.leftCols<3>() * turn.transpose()).eval();
+}
+
 }  // namespace
 
 PerFinger<Contact> ContactsOn(const Grasp& grasp, const Shape& shape, double tip_radius) {
@@ -80,6 +92,7 @@ FingertipMotion GenerateMotion(const Grasp& grasp, const GenerateOptions& option
   const int count = static_cast<int>(std::floor(1.5 * T / options.dt + 1e-9)) + 1;
   PoseDmp reach = WithEndpoints(grasp.reach, X_OG_start, X_OG_goal);
   reach.motion.tau = T;
+  if (options.similar_reach) TurnForcing(grasp.reach, reach);
   const Pose X_GH = grasp.X_HG.inverse();
   const HandPath path = RollOutHand(reach, X_GH, T, options.dt, count);
 

@@ -19,6 +19,11 @@ struct GenerateOptions {
   std::optional<Pose> X_WG_start;
   std::optional<double> duration;  // T, s; absent: as demonstrated
   double dt = 0.005;               // s, step of samples and integrator
+  // The shape of a reach from another start. false: the learned path about the object plus an offset
+  // that fades (the plain DMP). true: the learned path turned and scaled with the vector from start
+  // to goal: the forcing term of Eq. 12 with its position weights turned and scaled alike. For
+  // robots whose start lies elsewhere than the demonstrator's.
+  bool similar_reach = false;
   // Further rotation of the whole reach about the object's z, rad (what symmetry leaves free).
   double yaw = 0;
 };

@@ -88,8 +88,8 @@ HandModel MakeHandModel(const KinematicTree& tree, const Eigen::VectorXd& rest) 
     const bool abduction = Contains(name, "abduction");
     model.rest[j] = abduction ? 0
                               : tree.lower[j] + (tree.upper[j] - tree.lower[j]) *
-                                                    (Contains(name, "cmc") ? 0.5 : 0.3);
-    model.rest_sigma[j] = abduction ? 0.12 : 0.6;
+                                                    (Contains(name, "cmc") ? 0.5 : 0.2);
+    model.rest_sigma[j] = abduction ? 0.12 : 1.0;
   }
   if (rest.size() == n) model.rest = rest;
   for (int j = 0; j < n; ++j) {
