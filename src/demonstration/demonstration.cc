@@ -7,13 +7,11 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "demonstration/demonstration_columns.h"
 
 namespace springgrasp {
 namespace {
 
-// Columns of one sample in file order; the wrist's seven come first, then three per finger.
-constexpr int kWristColumns = 7;
-constexpr int kPointColumns = kWristColumns + 3 * kNumFingers;
 constexpr double kFarthest = 50;  // m; larger coordinates are surely millimetres
 
 struct Columns {
@@ -23,15 +21,6 @@ struct Columns {
   std::vector<int> further;
   std::size_t count = 0;
 };
-
-std::vector<std::string> PointColumnNames() {
-  std::vector<std::string> names = {"wrist_x",  "wrist_y",  "wrist_z", "wrist_qw",
-                                    "wrist_qx", "wrist_qy", "wrist_qz"};
-  for (const std::string_view finger : kFingerNames) {
-    for (const char* axis : {"_x", "_y", "_z"}) names.push_back(std::string(finger) + axis);
-  }
-  return names;
-}
 
 std::string_view Trim(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
@@ -266,6 +255,15 @@ void CheckWhole(const Demonstration& demonstration) {
 
 }  // namespace
 
+std::vector<std::string> PointColumnNames() {
+  std::vector<std::string> names = {"wrist_x",  "wrist_y",  "wrist_z", "wrist_qw",
+                                    "wrist_qx", "wrist_qy", "wrist_qz"};
+  for (const std::string_view finger : kFingerNames) {
+    for (const char* axis : {"_x", "_y", "_z"}) names.push_back(std::string(finger) + axis);
+  }
+  return names;
+}
+
 PerFinger<bool> RecordedFingers(const Demonstration& demonstration) {
   PerFinger<bool> recorded;
   for (int f = 0; f < kNumFingers; ++f) {
@@ -312,76 +310,6 @@ Demonstration ParseDemonstration(const std::string& text, const std::string& nam
 
 Demonstration ReadDemonstration(const std::string& path) {
   return ParseDemonstration(ReadFile(path), path);
-}
-
-std::string FormatDemonstration(const Demonstration& demonstration) {
-  fmt::memory_buffer out;
-  const auto write = [&out]<typename... Args>(fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(out), format, std::forward<Args>(args)...);
-  };
-  const auto write_numbers = [&write](const double* values, int count, char separator) {
-    for (int i = 0; i < count; ++i) write("{}{}", separator, values[i]);
-  };
-  write("# frame: {}\n", demonstration.frame);
-  if (demonstration.up) {
-    write("# up:");
-    write_numbers(demonstration.up->data(), 3, ' ');
-    write("\n");
-  }
-  if (demonstration.object) {
-    write("# object: {}; pose:", FormatShape(demonstration.object->shape));
-    write_numbers(PoseToArray(demonstration.object->X_WO).data(), 7, ' ');
-    write("\n");
-  }
-  if (demonstration.marker_offset != 0) {
-    write("# marker_offset: {}\n", demonstration.marker_offset);
-  }
-  for (const std::string& comment : demonstration.comments) {
-    // A description of the frame was read as such; the four known names stand above.
-    write("# {}\n", comment.starts_with("frame:") ? "original " + comment : comment);
-  }
-  write("t");
-  for (const std::string& column : PointColumnNames()) write(",{}", column);
-  for (const std::string_view finger : kFingerNames) write(",{}_confidence", finger);
-  for (const std::string& column : demonstration.further_columns) write(",{}", column);
-  write("\n");
-  for (const DemonstrationSample& sample : demonstration.samples) {
-    write("{}", sample.t);
-    if (sample.p_WH) {
-      write_numbers(sample.p_WH->data(), 3, ',');
-    } else {
-      write(",,,");
-    }
-    if (sample.R_WH) {
-      const Eigen::Quaterniond& q = *sample.R_WH;
-      write(",{},{},{},{}", q.w(), q.x(), q.y(), q.z());
-    } else {
-      write(",,,,");
-    }
-    for (const auto& tip : sample.p_WF) {
-      if (tip) {
-        write_numbers(tip->data(), 3, ',');
-      } else {
-        write(",,,");
-      }
-    }
-    for (int f = 0; f < kNumFingers; ++f) {
-      if (sample.p_WF[f]) {
-        write(",{}", sample.confidence[f]);
-      } else {
-        write(",");
-      }
-    }
-    for (std::size_t i = 0; i < demonstration.further_columns.size(); ++i) {
-      write(",{}", i < sample.further.size() ? sample.further[i] : std::string());
-    }
-    write("\n");
-  }
-  return fmt::to_string(out);
-}
-
-void WriteDemonstration(const Demonstration& demonstration, const std::string& path) {
-  WriteFileAtomically(path, FormatDemonstration(demonstration));
 }
 
 }  // namespace springgrasp

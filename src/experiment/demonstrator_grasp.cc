@@ -39,7 +39,7 @@ TypePrior PriorOf(const DemonstratorHand& hand, const std::string& type, const S
     prior.q = PostureOf(hand.tree, {1.2, 0.0, 0.3, 0.3},
                         {{{0.05, 0.8, 0.6, 0.3}, {-0.05, 0.8, 0.6, 0.3}, curled, curled}});
     // Turned so that a face of a box lies between thumb and fingers.
-    prior.R_OH = Eigen::AngleAxisd(0.7, Z) * HandAxes(-Z, Y);
+    prior.R_OH = Eigen::AngleAxisd(0.2, Z) * HandAxes(-Z, Y);
     prior.p_HO = {0.10, 0.02, -0.06};
   } else if (type == "power") {
     const FingerAngles wrapped{0, 0.8, 0.9, 0.5};
