@@ -38,7 +38,7 @@ HandVector EnclosingGripTorque(const EnclosingGrip& grip) {
   for (int f = 0; f < kNumFingers; ++f) {
     if (!grip.involved[f]) continue;
     torque[1 + 2 * f] = grip.proximal;
-    torque[2 + 2 * f] = grip.distal;
+    torque[2 + 2 * f] = f == kThumb ? grip.thumb_distal : grip.distal;
   }
   return torque;
 }

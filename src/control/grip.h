@@ -28,6 +28,8 @@ HandVector FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& 
 struct EnclosingGrip {
   PerFinger<bool> involved = {};
   double proximal = 0.3, distal = 0.25, palm = 0.1;
+  double thumb_distal =
+      0.1;  // the thumb presses with its base: bent in, it would cross the fingers
 };
 HandVector EnclosingGripTorque(const EnclosingGrip& grip);
 

@@ -78,6 +78,7 @@ class Performer {
       const PneumaticHandModel model;
       enclosing.proximal = grip.enclosing_pressure * model.torque_per_bar[1];
       enclosing.distal = grip.distal_ratio * enclosing.proximal;
+      enclosing.thumb_distal = grip.thumb_distal_ratio * enclosing.proximal;
       enclosing.palm = 0.5 * enclosing.proximal;
       return EnclosingGripTorque(enclosing);
     }
@@ -175,6 +176,18 @@ class Performer {
     }
   }
 
+  // Bodies of the robot that touch the object now, for messages.
+  std::string Touching() const {
+    std::string names;
+    for (const ContactPoint& c : simulation_.contacts()) {
+      const int other = c.body1 == object_ ? c.body2 : c.body2 == object_ ? c.body1 : -1;
+      if (other < 0) continue;
+      const std::string name = NameOf(simulation_.model(), mjOBJ_BODY, other);
+      if (names.find(name) == std::string::npos) names += (names.empty() ? "" : ", ") + name;
+    }
+    return names.empty() ? "nothing" : names;
+  }
+
   void WatchFirstContact(const Pose& X_WO, const Pose& X_WH, double torsion, double dt) {
     opposed_window_.Add(simulation_.contacts(), X_WO, X_WH, torsion, dt);
     const double moved = (X_WO.translation() - X_WO_start_.translation()).norm();
@@ -183,8 +196,8 @@ class Performer {
         (moved > criteria_.max_early_motion || tilt > criteria_.max_early_tilt_deg)) {
       Record(Outcome::kCollided,
              fmt::format("object moved {:.0f} mm and tilted {:.0f} degrees before the first "
-                         "opposed contact, in {}",
-                         1e3 * moved, tilt, PhaseName(performance_.reached)));
+                         "opposed contact, in {}, touching {}",
+                         1e3 * moved, tilt, PhaseName(performance_.reached), Touching()));
       over_ = true;
       return;
     }

@@ -29,10 +29,11 @@ inline PneumaticGains StiffHold() {
 }
 
 struct GripOptions {
-  double acceleration = 20;           // m/s^2, that the grip shall withstand besides gravity
-  double safety = 2.0;                // of the fingertip grip force
-  double min_force = 2.5;             // N
-  double enclosing_pressure = 3.0;    // bar, of the involved fingers in a power grasp
+  double acceleration = 20;         // m/s^2, that the grip shall withstand besides gravity
+  double safety = 2.0;              // of the fingertip grip force
+  double min_force = 2.5;           // N
+  double enclosing_pressure = 3.0;  // bar, of the involved fingers in a power grasp
+  double thumb_distal_ratio = 0.3;
   double distal_ratio = 0.8;          // distal over proximal pressure in a power grasp
   PneumaticGains hand = StiffHold();  // once the grip has settled
   double ramp = 0.6;                  // s, to full grip

@@ -16,10 +16,11 @@ namespace {
 
 // Slower reaches are tried where the arm is not fast enough for the demonstrated one.
 constexpr double kSlower[] = {1.0, 1.4, 2.0};
-constexpr double kClosed = 1.35;           // fraction of T at which the fingers are planned closed
-constexpr double kWaitClearance = 0.015;   // m, between object and waiting fingers
-constexpr double kMaxEarlyFlexion = 0.25;  // rad
-constexpr double kFastest = 1.5;           // s, reach of the robot's arm
+constexpr double kClosed = 1.35;  // fraction of T at which the fingers are planned closed
+constexpr double kApproachClearance = 0.02;  // m, between object and open hand on its way
+constexpr double kWaitClearance = 0.015;     // m, between object and waiting fingers
+constexpr double kMaxEarlyFlexion = 0.25;    // rad
+constexpr double kFastest = 1.5;             // s, reach of the robot's arm
 
 std::vector<KnownTips> TipsOf(const FingertipMotion& motion) {
   std::vector<KnownTips> tips(motion.samples.size());
@@ -165,7 +166,8 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
       for (const FingertipMotionSample& sample : motion.samples) {
         X_OH.push_back(turned.X_WO.inverse() * sample.X_WG * X_GH);
       }
-      X_OH = ClearApproach(body.hand, generate.shape, X_OH, q_open, dt, motion.T, 0.010);
+      X_OH =
+          ClearApproach(body.hand, generate.shape, X_OH, q_open, dt, motion.T, kApproachClearance);
       for (Pose& X : X_OH) X = turned.X_WO * X;
       return X_OH;
     };
@@ -225,8 +227,11 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     plan.T = motion.T;
     plan.X_WH = planned.X_WH;
     plan.arm = Fixed<ArmVector>(planned.arm);
-    const Eigen::VectorXd q_wait =
-        OpenedPosture(body.hand, result.posture, generate.shape, motion.involved, kWaitClearance);
+    // An object that seats in the palm has to pass the thumb on its way in.
+    const Eigen::VectorXd q_wait = grasp.type == "power"
+                                       ? q_open
+                                       : OpenedPosture(body.hand, result.posture, generate.shape,
+                                                       motion.involved, kWaitClearance);
     const std::vector<Eigen::VectorXd> q_hand =
         CloseAfterArrival(body.hand, hand, motion.involved, q_wait, result.posture.q, dt, motion.T);
     plan.hand = Fixed<HandVector>(q_hand);

@@ -196,8 +196,9 @@ HandMotionResult MapHandMotion(const HumanHand& human, const RobotHand& robot,
 std::vector<Pose> ClearApproach(const RobotHand& robot, const Shape& shape,
                                 const std::vector<Pose>& X_OH, const Eigen::VectorXd& q_open,
                                 double dt, double T, double clearance, double closing) {
-  constexpr double kStep = 0.01, kMost = 0.16;  // m, offsets
-  constexpr int kStride = 3;                    // samples between checks
+  constexpr double kStep = 0.01, kMost = 0.16;         // m, offsets
+  constexpr double kNearGoal = 0.98, kApproach = 0.2;  // of T, where less clearance is unavoidable
+  constexpr int kStride = 3;                           // samples between checks
   const int n = static_cast<int>(X_OH.size());
   if (n == 0) return {};
   const int last = std::min(n - 1, static_cast<int>(std::lround(T / dt)));
@@ -209,13 +210,18 @@ std::vector<Pose> ClearApproach(const RobotHand& robot, const Shape& shape,
   std::vector<Pose> X_HB;
   // What the open hand has at the goal is all that can be asked near it.
   const double at_goal = Clearance(robot, shape, X_OH[last], q_open, X_HB);
-  const double wanted = std::min(clearance, at_goal);
+  const auto wanted = [&](int k) {
+    const double s = dt * k / T;
+    return std::min(clearance, at_goal + (clearance - at_goal) *
+                                             std::clamp((kNearGoal - s) / kApproach, 0.0, 1.0));
+  };
   const auto shortage = [&](const Eigen::Vector3d& offset_O) {
     double sum = 0;
     for (int k = 0; k < last; k += kStride) {
       Pose X = X_OH[k];
       X.translation() += bump(k) * offset_O;
-      sum += std::max(0.0, wanted - HandDistance(robot, X_HB, X, shape, kAllFingers, true) - 1e-4);
+      sum +=
+          std::max(0.0, wanted(k) - HandDistance(robot, X_HB, X, shape, kAllFingers, true) - 1e-4);
     }
     return sum;
   };

@@ -11,16 +11,18 @@
 namespace springgrasp {
 namespace {
 
-constexpr double kTouch = 0.0002;     // m
-constexpr double kCoarse = 0.06;      // rad, step of closing
-constexpr int kBends = 14;            // tried angles of the distal joint
-constexpr double kPassing = 0.02;     // m, a phalanx farther than this takes no part
-constexpr double kNear = 0.0025;      // m, touches once the hand presses
-constexpr double kPalmNear = 0.005;   // m, the palm carries once the fingers pull
-constexpr double kHandWidth = 0.09;   // m, an object longer than this lies under all fingers
-constexpr double kThumbRoom = 0.004;  // m
-constexpr int kPalm = -1;             // instead of a finger
-constexpr int kSamples = 6;           // along a phalanx
+constexpr double kTouch = 0.0002;      // m
+constexpr double kCoarse = 0.06;       // rad, step of closing
+constexpr int kBends = 14;             // tried angles of the distal joint ...
+constexpr double kMaxBend = 1.3;       // ... up to this, rad: a full hook would cross the thumb
+constexpr double kMaxThumbBend = 0.6;  // rad: the thumb presses rather than hooks
+constexpr double kPassing = 0.02;      // m, a phalanx farther than this takes no part
+constexpr double kNear = 0.0025;       // m, touches once the hand presses
+constexpr double kPalmNear = 0.005;    // m, the palm carries once the fingers pull
+constexpr double kHandWidth = 0.09;    // m, an object longer than this lies under all fingers
+constexpr double kThumbRoom = 0.004;   // m
+constexpr int kPalm = -1;              // instead of a finger
+constexpr int kSamples = 6;            // along a phalanx
 
 // Of the palm and the open fingers, which an object seats against; the thumb stands aside.
 double SeatDistance(const RobotHand& hand, const std::vector<Pose>& X_HB, const Pose& X_OH,
@@ -102,8 +104,9 @@ FingerTouch CloseFinger(const RobotHand& hand, int finger, const Pose& X_OH, con
   double best_score = std::numeric_limits<double>::infinity();
   const double low = hand.tree.lower[f.j0], high = hand.tree.upper[f.j0];
   for (int b = 0; b < kBends; ++b) {
-    trial[f.j1] =
-        hand.tree.lower[f.j1] + (hand.tree.upper[f.j1] - hand.tree.lower[f.j1]) * b / (kBends - 1);
+    const double bend =
+        std::min(hand.tree.upper[f.j1], finger == kThumb ? kMaxThumbBend : kMaxBend);
+    trial[f.j1] = hand.tree.lower[f.j1] + (bend - hand.tree.lower[f.j1]) * b / (kBends - 1);
     trial[f.j0] = low;
     if (nearest(touch_at(trial)) < kTouch) continue;
     double open = low, closed = low;

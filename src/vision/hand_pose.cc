@@ -31,7 +31,7 @@ Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
 struct MaskField {
   const HandMask* mask = nullptr;
   cv::Mat outside;                       // CV_32F, px of the picture to the nearest mask entry
-  std::vector<Eigen::Vector2d> samples;  // px, of the mask
+  std::vector<Eigen::Vector2d> samples;  // px, of the mask's outline
 };
 
 MaskField MakeField(const HandMask& mask, int wanted, const Eigen::Vector2d& middle,
@@ -44,10 +44,16 @@ MaskField MakeField(const HandMask& mask, int wanted, const Eigen::Vector2d& mid
   field.outside *= mask.step;
   int total = 0;
   const auto visit = [&](auto&& keep) {
-    for (int i = 0; i < mask.mask.rows; i += 2) {
+    for (int i = 0; i < mask.mask.rows; ++i) {
       const std::uint8_t* row = mask.mask.ptr(i);
-      for (int j = 0; j < mask.mask.cols; j += 2) {
+      for (int j = 0; j < mask.mask.cols; ++j) {
         if (row[j] == 0) continue;
+        // On the outline, but not where the region cuts the mask.
+        if (i == 0 || j == 0 || i + 1 == mask.mask.rows || j + 1 == mask.mask.cols) continue;
+        if (row[j - 1] != 0 && row[j + 1] != 0 && mask.mask.at<std::uint8_t>(i - 1, j) != 0 &&
+            mask.mask.at<std::uint8_t>(i + 1, j) != 0) {
+          continue;
+        }
         const Eigen::Vector2d pixel = mask.ToPixel(Eigen::Vector2d(j, i));
         if ((pixel - middle).norm() < reach_px) keep(pixel);
       }
@@ -84,7 +90,7 @@ double OutsideDistance(const MaskField& field, const Eigen::Vector2d& pixel,
   return inside + beyond.norm();
 }
 
-// Residual of a distance d >= 0 that saturates at `reach`: d / sqrt(1 + (d / reach)^2) / sigma.
+// Residual of a signed distance that saturates at `reach`: d / sqrt(1 + (d / reach)^2) / sigma.
 double Saturate(double d, double reach, double sigma, double& slope) {
   const double ratio = d / reach, root = std::sqrt(1 + ratio * ratio);
   slope = 1 / (root * root * root * sigma);
@@ -95,7 +101,7 @@ double Saturate(double d, double reach, double sigma, double& slope) {
 // scale. Residuals, in this order:
 //   tips          3 per finger    (tip - seen) / sigma
 //   balls         1 per view      distance outside the mask
-//   mask samples  1 per view      distance from the nearest ball
+//   outline       1 per view      signed distance from the outline of the balls
 //   motion        6               deviation from the predicted pose
 //   joints        2 n             deviation from the last and from the resting posture
 //   couplings     1 each          DIP - 2/3 PIP
@@ -223,7 +229,7 @@ class FitProblem {
           const double d = (pixel_[i] - sample).norm() - radius_[i];
           if (d < least) least = d, nearest = i;
         }
-        if (least > 0) {
+        {
           double gain;
           r[row] = Saturate(least, options_.mask_reach_px, options_.skin_sigma_px, gain);
           if (J != nullptr) {
@@ -408,7 +414,15 @@ std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras&
   }
   if (along.norm() < 1e-6) along = -Eigen::Vector3d::UnitY();
   along = (R_WC * along).normalized();
-  std::optional<HandFit> best;
+  // Coarse to fine: outlines pull from afar first.
+  HandPoseOptions coarse = options;
+  coarse.mask_reach_px *= 2.5;
+  coarse.skin_sigma_px *= 2.5;
+  coarse.ball_sigma_px *= 2;
+  HandFit any;
+  any.q = model.rest;
+  FitProblem coarse_problem(model, cameras, observation, any, any.X_WH, true, true, coarse);
+  std::vector<HandFit> starts;
   for (const double bend : {0.3, 1.0, 1.7}) {
     for (const double tilt : {-0.4, 0.0, 0.5, 1.0}) {
       HandFit start;
@@ -420,10 +434,16 @@ std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras&
       for (int f : seen)
         model_tips += FittedTip(model, start, f) / static_cast<double>(seen.size());
       start.X_WH.translation() = tips - model_tips;
-      FitProblem problem(model, cameras, observation, start, start.X_WH, true, true, options);
-      const HandFit fit = Solve(problem, model, start, options.start_iterations);
-      if (!best || fit.cost < best->cost) best = fit;
+      starts.push_back(Solve(coarse_problem, model, start, options.start_iterations));
     }
+  }
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const HandFit& a, const HandFit& b) { return a.cost < b.cost; });
+  FitProblem problem(model, cameras, observation, any, any.X_WH, true, true, options);
+  std::optional<HandFit> best;
+  for (std::size_t i = 0; i < std::min<std::size_t>(4, starts.size()); ++i) {
+    const HandFit fit = Solve(problem, model, starts[i], 2 * options.start_iterations);
+    if (!best || fit.cost < best->cost) best = fit;
   }
   if (best) JudgeTips(model, observation, *best);
   return best;

@@ -19,12 +19,12 @@ namespace springgrasp {
 struct HandPoseOptions {
   double tip_sigma = 0.003;   // m, of a fully trusted fingertip
   double ball_sigma_px = 5;   // of a ball outside the mask
-  double skin_sigma_px = 5;   // of a mask point off the balls: other things may look like skin
+  double skin_sigma_px = 5;   // of the mask's outline off that of the balls
   double mask_reach_px = 12;  // beyond, a mask residual says no more: objects hide the hand
   double pose_sigma = 0.02;   // m per frame, about the predicted position
   double turn_sigma = 0.12;   // rad per frame
   double joint_sigma = 0.15;  // rad per frame
-  int mask_samples = 40;      // per view
+  int mask_samples = 60;      // on the outline, per view
   int iterations = 8;         // Levenberg-Marquardt, per frame
   int start_iterations = 25;  // of each start in the first frame
 };
