@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "apps/program.h"
+#include "base/files.h"
 #include "experiment/small_experiment.h"
 
 namespace springgrasp {
@@ -74,7 +75,7 @@ class BadInputTest : public testing::Test {
 
 TEST_F(BadInputTest, Usage) {
   ExpectRefused("springgrasp", "subcommand");
-  ExpectRefused("springgrasp rum", "rum");
+  ExpectRefused("springgrasp rum", "there is no command 'rum'");
   ExpectRefused("springgrasp run", "experiment is required");
   ExpectRefused("springgrasp run first_grasps -o out --jobs 0", "jobs");
   ExpectRefused("springgrasp run first_grasps -o out --set seed", "key=value");
@@ -87,6 +88,11 @@ TEST_F(BadInputTest, MissingFiles) {
   ExpectRefused("springgrasp observe nowhere.yaml -o demo.csv", "nowhere.yaml: no such");
   ExpectRefused("springgrasp learn nowhere.csv --type pinch -o g.yaml", "nowhere.csv: no such");
   ExpectRefused("springgrasp generate nowhere.yaml --object '0 0 0' --shape sphere:0.04 -o m.csv",
+                "nowhere.yaml: no such");
+  ExpectRefused("springgrasp perform nowhere.yaml --scene nowhere.yaml -o out",
+                "nowhere.yaml: no such");
+  ExpectRefused("springgrasp perform '" + SourceFolder() +
+                    "/experiments/first_grasps/pinch.yaml' --scene nowhere.yaml -o out",
                 "nowhere.yaml: no such");
   ExpectRefused("springgrasp inspect nowhere.xml", "nowhere.xml");
   ExpectRefused("springgrasp model nowhere.json", "nowhere.json: no such");
@@ -121,6 +127,8 @@ TEST_F(BadInputTest, MalformedYaml) {
 TEST_F(BadInputTest, UnknownKeysAndNegativeMass) {
   const std::string scene = kSmallScene;
   Write("unknown.yaml", scene + "tabel: {height: 1}\n");
+  ExpectRefused("springgrasp generate unknown.yaml --object '0 0 0' --shape sphere:0.04 -o m.csv",
+                "unknown.yaml:");
   ExpectRefused("springgrasp observe unknown.yaml -o demo.csv",
                 "unknown.yaml:3: unknown key 'tabel'");
   std::string heavy = scene;

@@ -17,7 +17,7 @@ struct ProgramResult {
 // `command` goes through the shell, in `folder`; "springgrasp" stands for the built program.
 inline ProgramResult RunProgram(const std::string& command, const std::string& folder) {
   const std::string script = "springgrasp() { '" SPRINGGRASP_PROGRAM "' \"$@\"; }; cd '" + folder +
-                             "' && { " + command + "; } 2>'" + folder + "/.stderr'";
+                             "' && { " + command + "\n } 2>'" + folder + "/.stderr'";
   ProgramResult result;
   FILE* pipe = popen(script.c_str(), "r");
   std::array<char, 4096> buffer;
