@@ -105,7 +105,7 @@ double Saturate(double d, double reach, double sigma, double& slope) {
 //   motion        6               deviation from the predicted pose
 //   joints        2 n             deviation from the last and from the resting posture
 //   couplings     1 each          DIP - 2/3 PIP
-//   scale         1
+//   scale         2               deviation from the last one and from the model's
 //   palm          1               back of the hand faces away from the cameras (first frame)
 class FitProblem {
  public:
@@ -136,10 +136,10 @@ class FitProblem {
       const double depth =
           cameras.view(v).X_WC.linear().col(2).dot(middle_W - cameras.view(v).X_WC.translation());
       fields_[v] = MakeField(*observation.masks[v], options.mask_samples, *middle,
-                             cameras.view(v).fx * 0.2 * last.scale / std::max(0.1, depth));
+                             cameras.view(v).fx * 0.2 / std::max(0.1, depth));
       num_residuals_ += static_cast<int>(model.balls.size() + fields_[v].samples.size());
     }
-    num_residuals_ += 6 + 2 * n_ + static_cast<int>(model.coupled.size()) + 2;
+    num_residuals_ += 6 + 2 * n_ + static_cast<int>(model.coupled.size()) + 3;
     node_motion_.assign(model.tree.nodes.size(), {});
     for (std::size_t b = 0; b < model.tree.nodes.size(); ++b) {
       for (int a = static_cast<int>(b); a >= 0; a = model.tree.nodes[a].parent) {
@@ -270,9 +270,16 @@ class FitProblem {
       }
       ++row;
     }
-    const double scale_sigma = first_ ? 0.06 : fit_scale_ ? 0.005 : 1e-6;
-    r[row] = (x[6 + n_] - (first_ ? 0 : std::log(last_.scale))) / scale_sigma;
-    if (J != nullptr) (*J)(row, 6 + n_) = 1 / scale_sigma;
+    // While it is free the scale also stays near that of the model, an adult's.
+    constexpr double kScaleSigma = 0.04;
+    const double tie = first_ ? 1e3 : fit_scale_ ? 0.005 : 1e-6;
+    r[row] = (x[6 + n_] - std::log(last_.scale)) / tie;
+    if (J != nullptr) (*J)(row, 6 + n_) = 1 / tie;
+    ++row;
+    if (first_ || fit_scale_) {
+      r[row] = x[6 + n_] / kScaleSigma;
+      if (J != nullptr) (*J)(row, 6 + n_) = 1 / kScaleSigma;
+    }
     ++row;
     if (first_) {
       constexpr double kPalmSigma = 0.35;  // of 1 - cosine: 50 degrees
@@ -473,6 +480,25 @@ HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
   HandFit start = last;
   start.X_WH = X_predicted;
   HandFit fit = Solve(problem, model, start, options.iterations);
+  // A hand that fled up the forearm or rolled over fits the tips nearly as well: every frame one
+  // way out is tried, about the fingertips.
+  static const std::array<Eigen::Vector3d, 6> kShifts = {
+      {{0.025, 0, 0}, {0, 0, 0}, {0, 0, 0}, {-0.02, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
+  static const std::array<Eigen::Vector3d, 6> kTurns = {
+      {{0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0}, {0, 0, 0}, {-0.3, 0, 0}, {0, -0.3, 0}}};
+  const int way = last.frame % static_cast<int>(kShifts.size());
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
+  for (const auto& tip : observation.tip_W) {
+    if (tip) pivot += *tip / tips;
+  }
+  HandFit other = fit;
+  const Eigen::Matrix3d turn = ExpRotation(fit.X_WH.linear() * kTurns[way]).toRotationMatrix();
+  other.X_WH.linear() = turn * fit.X_WH.linear();
+  other.X_WH.translation() =
+      pivot + turn * (fit.X_WH.translation() - pivot) + fit.X_WH.linear() * kShifts[way];
+  other = Solve(problem, model, other, 2 * options.iterations);
+  if (other.cost < fit.cost) fit = other;
+  fit.frame = last.frame + 1;
   JudgeTips(model, observation, fit);
   return fit;
 }

@@ -43,6 +43,7 @@ struct HandFit {
   double cost = 0;
   double tip_rms = 0;  // m, over the tips used
   int tips_used = 0;
+  int frame = 0;                 // updates since the start
   bool has_orientation = false;  // at least three tips
 };
 
