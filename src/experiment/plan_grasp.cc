@@ -9,6 +9,7 @@
 #include "kinematics/hand_ik.h"
 #include "kinematics/hand_motion.h"
 #include "kinematics/reach_plan.h"
+#include "kinematics/shape_distance.h"
 #include "motion/minimum_jerk.h"
 
 namespace springgrasp {
@@ -18,9 +19,11 @@ namespace {
 constexpr double kSlower[] = {1.0, 1.4, 2.0};
 constexpr double kClosed = 1.35;  // fraction of T at which the fingers are planned closed
 constexpr double kApproachClearance = 0.02;  // m, between object and open hand on its way
-constexpr double kWaitClearance = 0.015;     // m, between object and waiting fingers
-constexpr double kMaxEarlyFlexion = 0.25;    // rad
-constexpr double kFastest = 1.5;             // s, reach of the robot's arm
+constexpr double kWay = 0.72;                // of T, then the object enters the hand
+constexpr double kBlocked = -0.01;         // m, less than this on the way and another pose is tried
+constexpr double kWaitClearance = 0.015;   // m, between object and waiting fingers
+constexpr double kMaxEarlyFlexion = 0.25;  // rad
+constexpr double kFastest = 1.5;           // s, reach of the robot's arm
 
 std::vector<KnownTips> TipsOf(const FingertipMotion& motion) {
   std::vector<KnownTips> tips(motion.samples.size());
@@ -32,6 +35,20 @@ std::vector<KnownTips> TipsOf(const FingertipMotion& motion) {
 
 std::size_t ContactSample(const FingertipMotion& motion, double dt) {
   return std::min(motion.samples.size() - 1, static_cast<std::size_t>(std::lround(motion.T / dt)));
+}
+
+// Smallest distance of the open hand from the object over the first `samples` of the way, m.
+double ClearanceOnTheWay(const RobotHand& hand, const Shape& shape, const Pose& X_OW,
+                         const std::vector<Pose>& X_WH, const Eigen::VectorXd& q_open,
+                         double samples) {
+  std::vector<Pose> X_HB;
+  ForwardKinematics(hand.tree, q_open, X_HB);
+  double clearance = 1;
+  for (std::size_t i = 0; i < X_WH.size() && static_cast<double>(i) < samples; i += 3) {
+    clearance = std::min(clearance, HandDistance(hand, X_HB, X_OW * X_WH[i], shape,
+                                                 {true, true, true, true, true}, true));
+  }
+  return clearance;
 }
 
 ContactRequest RequestContacts(const RobotBody& body, const FingertipMotion& motion,
@@ -188,7 +205,13 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     reach.dt = dt;
     reach.T = motion.T;
     reach.q_hand = nominal_hand.q;
-    reach.path = path;
+    reach.path = [&](const Pose& X_OF) {
+      std::vector<Pose> X_WH = path(X_OF);
+      const Pose X_OW = (request.object.X_WO * X_OF).inverse();
+      const double clear =
+          ClearanceOnTheWay(body.hand, generate.shape, X_OW, X_WH, q_open, kWay * motion.T / dt);
+      return clear < kBlocked ? std::vector<Pose>() : X_WH;
+    };
     Arm arm = body.arm;
     for (int j = 0; j < arm.num_joints(); ++j) arm.q[arm.joints[j]] = request.arm_start[j];
     ReachOptions options;

@@ -145,7 +145,10 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
   plan.tilt = goal.motion.tilt;
   plan.roll = goal.motion.roll;
   plan.X_WH = request.path(goal.motion.X_OF);
-  ThrowUnless(!plan.X_WH.empty(), "a reach needs a path of hand poses, found none");
+  if (plan.X_WH.empty()) {
+    plan.reason = "the hand would touch the object on its way";
+    return false;
+  }
   plan.via_raise =
       RaisePath(hand, request.q_hand, request.table_height, request.table_edge, options.clearance,
                 static_cast<int>(std::lround(request.T / request.dt)), plan.X_WH);

@@ -31,6 +31,7 @@ struct ReachRequest {
   std::optional<Eigen::VectorXd> q_start;
   // The hand's path for an object posed at X_WO * X_OF (F: the free motion of the grasp about the
   // object, identity: as demonstrated). Its last poses must be X_WO * X_OF * X_HO^-1.
+  // Empty: this pose is no candidate, the way to it is blocked.
   std::function<std::vector<Pose>(const Pose& X_OF)> path;
 };
 

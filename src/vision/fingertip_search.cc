@@ -12,7 +12,7 @@ PerFinger<bool> FingertipTracker::Impl::FindDoubtful() const {
     doubtful[f] = !views[0].active[f] || !views[1].active[f];
     if (doubtful[f]) continue;
     const auto point = Triangulate(cameras, views[0].region[f], views[1].region[f]);
-    const double reach = 0.03 + 3 * fingers[f].v_W.norm();
+    const double reach = 0.015 + fingers[f].v_W.norm();
     doubtful[f] = !point ||
                   EpipolarDistance(cameras, views[0].region[f], views[1].region[f]) >
                       options.max_epipolar_px ||
@@ -52,8 +52,10 @@ void FingertipTracker::Impl::Reseed(const PerFinger<bool>& doubtful) {
   DropCollisions();
 }
 
-// Two regions that share one cap's pixels: the one that is farther from where it should be goes.
+// Two regions that share one cap's pixels: it hides the one that is farther from the camera. Where
+// their depths do not tell, the region farther from where it should be goes.
 void FingertipTracker::Impl::DropCollisions() {
+  constexpr double kDepthTells = 0.006;  // m
   for (int f = 0; f < kNumFingers; ++f) {
     for (int g = 0; g < f; ++g) {
       for (int v = 0; v < 2; ++v) {
@@ -63,12 +65,18 @@ void FingertipTracker::Impl::DropCollisions() {
         const double distance = (view.region[f] - view.region[g]).norm();
         // Two halves of one cap are less than a radius apart and together no larger than it.
         if (distance > 1.5 * r || view.mass[f] + view.mass[g] > kOneCap) continue;
-        const auto off = [&](int finger) {
-          const auto expected = Project(cameras.view(v), fingers[finger].p_W + fingers[finger].v_W);
-          const double lost = 4.0 * std::min(5, fingers[finger].lost_frames);
-          return (expected ? (*expected - view.region[finger]).norm() : 1e9) + lost;
-        };
-        const int loser = off(f) > off(g) ? f : g;
+        const Eigen::Vector3d p_WFf = fingers[f].p_W + fingers[f].v_W;
+        const Eigen::Vector3d p_WFg = fingers[g].p_W + fingers[g].v_W;
+        const double behind = DepthOf(v, p_WFf) - DepthOf(v, p_WFg);
+        int loser = behind > 0 ? f : g;
+        if (std::abs(behind) < kDepthTells) {
+          const auto off = [&](int finger, const Eigen::Vector3d& p_W) {
+            const auto expected = Project(cameras.view(v), p_W);
+            const double lost = 4.0 * std::min(5, fingers[finger].lost_frames);
+            return (expected ? (*expected - view.region[finger]).norm() : 1e9) + lost;
+          };
+          loser = off(f, p_WFf) > off(g, p_WFg) ? f : g;
+        }
         view.active[loser] = false;
         view.mass[loser] = view.similarity[loser] = 0;
       }
