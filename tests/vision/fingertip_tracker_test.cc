@@ -1,0 +1,145 @@
+#include "vision/fingertip_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "base/error.h"
+#include "vision/synthetic_caps.h"
+
+namespace springgrasp {
+namespace {
+
+struct Frame {
+  cv::Mat left, right;
+  std::vector<Eigen::Vector3d> tips;
+};
+
+// A hand that moves to the left and closes; with `cover` a bar stands before the ring finger's cap.
+Frame Render(const StereoCameras& eyes, int k, bool cover) {
+  const double s = k / 20.0;
+  const DrawnHand hand = MakeDrawnHand({0.09 - 0.05 * s, 0.05, 0.62}, 0.6 * s);
+  std::vector<DrawnCapsule> scene = hand.capsules;
+  if (cover) {
+    const Eigen::Vector3d before = hand.tips[kRing] - Eigen::Vector3d(-0.006, 0, 0.12);
+    scene.push_back({before, before, 0.024, {160, 60, 60}});
+  }
+  return {DrawCapsules(eyes.left, scene), DrawCapsules(eyes.right, scene), hand.tips};
+}
+
+TrackerOptions Options() {
+  TrackerOptions options;
+  options.cap = {kCapRadius, kCapLength, 0};
+  return options;
+}
+
+// Largest distance of a located finger from where it is; checks that none has another's place.
+double LargestError(const TrackedFrame& frame, const std::vector<Eigen::Vector3d>& tips) {
+  double largest = 0;
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (frame.fingers[f].p_W) {
+      largest = std::max(largest, (*frame.fingers[f].p_W - tips[f]).norm());
+    }
+  }
+  return largest;
+}
+
+TEST(FingertipTrackerTest, FollowsAClosingHandToAFewMillimetres) {
+  const StereoCameras eyes = TestEyes();
+  FingertipTracker tracker(eyes, Options());
+  RandomEngine engine = MakeStream(1, 0, "observation");
+  std::vector<double> errors;
+  for (int k = 0; k <= 20; ++k) {
+    const Frame frame = Render(eyes, k, false);
+    TrackedFrame tracked;
+    if (k == 0) {
+      const auto start = tracker.Start(frame.left, frame.right);
+      ASSERT_TRUE(start);
+      tracked = *start;
+    } else {
+      tracked = tracker.Update(frame.left, frame.right, engine);
+    }
+    EXPECT_EQ(tracked.num_seen(), kNumFingers) << "frame " << k;
+    EXPECT_LT(LargestError(tracked, frame.tips), 0.012) << "frame " << k;
+    for (int f = 0; f < kNumFingers; ++f) {
+      const TrackedFinger& finger = tracked.fingers[f];
+      if (!finger.p_W) continue;
+      errors.push_back((*finger.p_W - frame.tips[f]).norm());
+      EXPECT_GE(finger.confidence, 0);
+      EXPECT_LE(finger.confidence, 1);
+    }
+  }
+  std::sort(errors.begin(), errors.end());
+  EXPECT_LT(errors[errors.size() / 2], 0.003);
+}
+
+TEST(FingertipTrackerTest, AHiddenFingerIsMissingThenFoundAgain) {
+  const StereoCameras eyes = TestEyes();
+  FingertipTracker tracker(eyes, Options());
+  RandomEngine engine = MakeStream(1, 0, "observation");
+  for (int k = 0; k <= 16; ++k) {
+    const bool covered = k >= 4 && k < 10;
+    const Frame frame = Render(eyes, k, covered);
+    TrackedFrame tracked;
+    if (k == 0) {
+      const auto start = tracker.Start(frame.left, frame.right);
+      ASSERT_TRUE(start);
+      tracked = *start;
+    } else {
+      tracked = tracker.Update(frame.left, frame.right, engine);
+    }
+    if (covered) {
+      EXPECT_FALSE(tracked.fingers[kRing].p_W) << "invented in frame " << k;
+      EXPECT_EQ(tracked.fingers[kRing].confidence, 0);
+    }
+    // Right again within five frames, and never in another's place.
+    if (k >= 14) {
+      EXPECT_TRUE(tracked.fingers[kRing].p_W) << "still lost in frame " << k;
+    }
+    EXPECT_LT(LargestError(tracked, frame.tips), 0.015) << "frame " << k;
+    EXPECT_TRUE(tracked.fingers[kThumb].p_W && tracked.fingers[kPinkie].p_W);
+  }
+}
+
+TEST(FingertipTrackerTest, EqualFramesAndSeedGiveEqualNumbers) {
+  const StereoCameras eyes = TestEyes();
+  std::vector<Eigen::Vector3d> runs[2];
+  for (auto& run : runs) {
+    FingertipTracker tracker(eyes, Options());
+    RandomEngine engine = MakeStream(5, 0, "observation");
+    for (int k = 0; k < 3; ++k) {
+      const Frame frame = Render(eyes, k, false);
+      const TrackedFrame tracked = k == 0 ? *tracker.Start(frame.left, frame.right)
+                                          : tracker.Update(frame.left, frame.right, engine);
+      for (const TrackedFinger& finger : tracked.fingers) {
+        if (finger.p_W) run.push_back(*finger.p_W);
+      }
+    }
+  }
+  EXPECT_EQ(runs[0], runs[1]);
+}
+
+TEST(FingertipTrackerTest, DoesNotStartOnAnEmptyWall) {
+  const StereoCameras eyes = TestEyes();
+  FingertipTracker tracker(eyes, {});
+  EXPECT_FALSE(tracker.Start(DrawCapsules(eyes.left, {}), DrawCapsules(eyes.right, {})));
+  EXPECT_FALSE(tracker.started());
+}
+
+TEST(FingertipTrackerTest, PicturesOfAnotherSizeAreRefused) {
+  FingertipTracker tracker(TestEyes(), {});
+  const cv::Mat small(240, 320, CV_8UC3);
+  EXPECT_THROW(tracker.Start(small, small), Error);
+}
+
+TEST(FingertipTrackerTest, FindsTheSizeOfTheCapsItself) {
+  const StereoCameras eyes = TestEyes();
+  FingertipTracker tracker(eyes, {});
+  const Frame frame = Render(eyes, 0, false);
+  ASSERT_TRUE(tracker.Start(frame.left, frame.right));
+  EXPECT_NEAR(tracker.cap().radius, kCapRadius, 0.15 * kCapRadius);
+}
+
+}  // namespace
+}  // namespace springgrasp

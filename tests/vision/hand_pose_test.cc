@@ -1,0 +1,199 @@
+#include "vision/hand_pose.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "vision/synthetic_caps.h"
+
+namespace springgrasp {
+namespace {
+
+// A hand of the usual proportions, fingers along x, thumb on the y side; every flexion bends
+// towards -z. The joints carry the names that the model is read by.
+KinematicTree TestHand() {
+  KinematicTree tree;
+  tree.nodes.push_back({"hand", -1, Pose::Identity(), -1, Eigen::Vector3d::UnitZ(), false});
+  const auto add = [&](const std::string& name, int parent, const Eigen::Vector3d& p,
+                       const Eigen::Vector3d& axis, double lower, double upper) {
+    Pose X = Pose::Identity();
+    X.translation() = p;
+    tree.nodes.push_back({name, parent, X, tree.num_joints(), axis, false});
+    tree.joint_names.push_back(name);
+    tree.lower.conservativeResize(tree.num_joints());
+    tree.upper.conservativeResize(tree.num_joints());
+    tree.lower[tree.num_joints() - 1] = lower;
+    tree.upper[tree.num_joints() - 1] = upper;
+    return static_cast<int>(tree.nodes.size()) - 1;
+  };
+  const auto tip = [&](const std::string& finger, int node, double length) {
+    Pose X = Pose::Identity();
+    X.translation() = Eigen::Vector3d(length, 0, 0);
+    tree.frames.push_back({"mmm_" + finger + "_tip", node, X});
+  };
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ(), y = Eigen::Vector3d::UnitY();
+  int node = add("mmm_thumb_cmc_opposition", 0, {0.014, 0.0185, 0}, z, 0.3, 1.2);
+  node = add("mmm_thumb_cmc_flexion", node, {0, 0, 0}, y, -0.5, 0.8);
+  node = add("mmm_thumb_mcp", node, {0.037, 0, 0}, y, 0, 1.5);
+  tip("thumb", node, 0.045);
+  const double side[4] = {0.0237, 0, -0.0195, -0.038}, reach[4] = {0.0845, 0.0843, 0.0773, 0.0696};
+  const double bone[4] = {0.046, 0.050, 0.046, 0.0385};
+  for (int f = 1; f < kNumFingers; ++f) {
+    const std::string name = "mmm_" + std::string(kFingerNames[f]);
+    node = add(name + "_abduction", 0, {reach[f - 1], side[f - 1], 0}, z, -0.35, 0.35);
+    node = add(name + "_mcp", node, {0, 0, 0}, y, 0, 1.57);
+    node = add(name + "_pip", node, {bone[f - 1], 0, 0}, y, 0, 1.57);
+    node = add(name + "_dip", node, {0.62 * bone[f - 1], 0, 0}, y, 0, 1.57);
+    tip(std::string(kFingerNames[f]), node, 0.013);
+  }
+  return tree;
+}
+
+// Masks of the model's balls in both pictures, and its fingertips.
+struct Seen {
+  HandMask masks[2];
+  HandObservation observation;
+};
+
+void See(const HandModel& model, const HandFit& truth, const StereoCameras& eyes, Seen& seen) {
+  std::vector<Pose> X_HB;
+  ForwardKinematics(model.tree, truth.q, X_HB);
+  for (int v = 0; v < 2; ++v) {
+    const CameraModel& camera = eyes.view(v);
+    cv::Mat picture = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
+    for (const HandBall& ball : model.balls) {
+      const Eigen::Vector3d p_W = truth.X_WH * (X_HB[ball.node] * ball.p_B);
+      const Eigen::Vector2d pixel = *Project(camera, p_W);
+      const double depth = (camera.X_WC.inverse() * p_W).z();
+      cv::circle(
+          picture,
+          {static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y()))},
+          static_cast<int>(std::lround(camera.fx * ball.radius / depth)), 255, cv::FILLED);
+    }
+    seen.masks[v].region = {0, 0, camera.width, camera.height};
+    seen.masks[v].step = 2;
+    cv::resize(picture, seen.masks[v].mask, {camera.width / 2, camera.height / 2}, 0, 0,
+               cv::INTER_NEAREST);
+    seen.observation.masks[v] = &seen.masks[v];
+  }
+  for (int f = 0; f < kNumFingers; ++f) {
+    seen.observation.tip_W[f] = FittedTip(model, truth, f);
+    seen.observation.confidence[f] = 1;
+  }
+}
+
+// Palm to the cameras, fingers up, at 0.6 m.
+HandFit OpenHand(const HandModel& model) {
+  HandFit truth;
+  truth.q = (0.8 * model.rest).cwiseMax(model.tree.lower).cwiseMin(model.tree.upper);
+  truth.X_WH.linear() << 0.1, 1, 0, -1, 0.1, 0, 0, 0, 1;
+  truth.X_WH.linear().col(0).normalize();
+  truth.X_WH.linear().col(1) = truth.X_WH.linear().col(2).cross(truth.X_WH.linear().col(0));
+  truth.X_WH.linear() =
+      Eigen::AngleAxisd(0.15, Eigen::Vector3d::UnitX()).toRotationMatrix() * truth.X_WH.linear();
+  truth.X_WH.translation() = Eigen::Vector3d(0.05, 0.1, 0.62);
+  return truth;
+}
+
+double TurnDeg(const HandFit& a, const HandFit& b) {
+  return RotationDistance(Eigen::Quaterniond(a.X_WH.linear()),
+                          Eigen::Quaterniond(b.X_WH.linear())) *
+         180 / M_PI;
+}
+
+TEST(HandPoseTest, AnOpenHandIsFoundWithoutAGuess) {
+  const HandModel model = MakeHandModel(TestHand());
+  const StereoCameras eyes = TestEyes();
+  const HandFit truth = OpenHand(model);
+  Seen seen;
+  See(model, truth, eyes, seen);
+  const auto fit = StartHandFit(model, eyes, seen.observation);
+  ASSERT_TRUE(fit);
+  EXPECT_LT((fit->X_WH.translation() - truth.X_WH.translation()).norm(), 0.012);
+  EXPECT_LT(TurnDeg(*fit, truth), 10);
+  EXPECT_NEAR(fit->scale, 1, 0.05);
+  EXPECT_LT(fit->tip_rms, 0.004);
+}
+
+TEST(HandPoseTest, AMovingHandIsFollowed) {
+  const HandModel model = MakeHandModel(TestHand());
+  const StereoCameras eyes = TestEyes();
+  HandFit truth = OpenHand(model), fit = truth;
+  Seen seen;
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  for (int k = 0; k < 12; ++k) {
+    truth.X_WH.translation() += Eigen::Vector3d(-0.006, 0.002, -0.002);
+    truth.X_WH.linear() =
+        Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitZ()).toRotationMatrix() * truth.X_WH.linear();
+    truth.q = (truth.q.array() + 0.03).matrix().cwiseMin(model.tree.upper);
+    See(model, truth, eyes, seen);
+    const Eigen::Vector3d before = fit.X_WH.translation();
+    fit = UpdateHandFit(model, eyes, seen.observation, fit, velocity, false);
+    velocity = fit.X_WH.translation() - before;
+  }
+  EXPECT_TRUE(fit.has_orientation);
+  EXPECT_LT((fit.X_WH.translation() - truth.X_WH.translation()).norm(), 0.012);
+  EXPECT_LT(TurnDeg(fit, truth), 10);
+}
+
+TEST(HandPoseTest, WithTwoTipsOnlyThePositionFollows) {
+  const HandModel model = MakeHandModel(TestHand());
+  const StereoCameras eyes = TestEyes();
+  const HandFit truth = OpenHand(model);
+  Seen seen;
+  See(model, truth, eyes, seen);
+  const Eigen::Vector3d step(0.01, 0, 0);
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (f >= 2)
+      seen.observation.tip_W[f].reset();
+    else
+      *seen.observation.tip_W[f] += step;
+  }
+  const HandFit fit =
+      UpdateHandFit(model, eyes, seen.observation, truth, Eigen::Vector3d::Zero(), false);
+  EXPECT_FALSE(fit.has_orientation);
+  EXPECT_LT((fit.X_WH.translation() - truth.X_WH.translation() - step).norm(), 1e-9);
+  EXPECT_FALSE(StartHandFit(model, eyes, seen.observation));
+}
+
+TEST(HandPoseTest, AHandWithoutFingertipFramesIsRefused) {
+  KinematicTree tree = TestHand();
+  tree.frames.pop_back();
+  EXPECT_THROW(MakeHandModel(tree), Error);
+}
+
+TEST(SmoothHandTrackTest, QuadraticMotionIsLeftAloneAndNoiseIsReduced) {
+  std::vector<HandSample> track;
+  RandomEngine engine = MakeStream(1, 0, "observation");
+  double noise_before = 0, noise_after = 0;
+  const auto at = [](double t) { return Eigen::Vector3d(0.3 * t * t, 0.1 * t, 0.5); };
+  for (int i = 0; i < 60; ++i) {
+    const double t = i / 30.0;
+    HandSample sample;
+    sample.t = t;
+    sample.p_WH = at(t);
+    sample.R_WH = ExpRotation({0, 0, 0.5 * t});
+    track.push_back(sample);
+  }
+  for (const HandSample& sample : SmoothHandTrack(track)) {
+    EXPECT_LT((*sample.p_WH - at(sample.t)).norm(), 1e-6);
+    EXPECT_LT(RotationDistance(*sample.R_WH, ExpRotation({0, 0, 0.5 * sample.t})), 1e-6);
+  }
+  for (HandSample& sample : track) {
+    *sample.p_WH += 0.002 * Eigen::Vector3d(Normal(engine), Normal(engine), Normal(engine));
+    noise_before += (*sample.p_WH - at(sample.t)).squaredNorm();
+  }
+  track[20].p_WH.reset();
+  const auto smooth = SmoothHandTrack(track);
+  EXPECT_FALSE(smooth[20].p_WH);  // missing stays missing
+  for (const HandSample& sample : smooth) {
+    if (sample.p_WH) noise_after += (*sample.p_WH - at(sample.t)).squaredNorm();
+  }
+  EXPECT_LT(noise_after, 0.65 * noise_before);
+}
+
+}  // namespace
+}  // namespace springgrasp
