@@ -8,18 +8,21 @@ using namespace tracker_internal;  // NOLINT: the tracker's own names
 // wrong side of a neighbour.
 PerFinger<bool> FingertipTracker::Impl::FindDoubtful() const {
   PerFinger<bool> doubtful = {};
+  PerFinger<double> jump = {};  // m, from where the past says
   for (int f = 0; f < kNumFingers; ++f) {
     doubtful[f] = !views[0].active[f] || !views[1].active[f];
     if (doubtful[f]) continue;
     const auto point = Triangulate(cameras, views[0].region[f], views[1].region[f]);
-    const double reach = 0.015 + fingers[f].v_W.norm();
-    doubtful[f] = !point ||
-                  EpipolarDistance(cameras, views[0].region[f], views[1].region[f]) >
-                      options.max_epipolar_px ||
-                  (point->p_WQ - fingers[f].p_W - fingers[f].v_W).norm() > reach;
+    jump[f] = point ? (point->p_WQ - fingers[f].p_W - fingers[f].v_W).norm() : 1;
+    doubtful[f] =
+        jump[f] > 0.015 + fingers[f].v_W.norm() ||
+        EpipolarDistance(cameras, views[0].region[f], views[1].region[f]) > options.max_epipolar_px;
   }
+  // A thumb may well pass behind the index: order is held only against fingers that moved oddly.
+  constexpr double kOdd = 0.008;  // m
   for (int v = 0; v < 2; ++v) {
     for (int f = 1; f < kNumFingers; ++f) {
+      if (jump[f] < kOdd && jump[f - 1] < kOdd) continue;
       PerFinger<bool> pair = {};
       pair[f - 1] = views[v].active[f - 1];
       pair[f] = views[v].active[f];
@@ -145,6 +148,16 @@ void FingertipTracker::Impl::Search() {
       }
     }
   }
+  // Where fingers should cross, their crossing costs nothing.
+  std::array<bool, 2> in_order;
+  for (int v = 0; v < 2; ++v) {
+    Regions expected;
+    for (int f = 0; f < kNumFingers; ++f) {
+      expected[f] =
+          Project(cameras.view(v), fingers[f].p_W + fingers[f].v_W).value_or(views[v].region[f]);
+    }
+    in_order[v] = InFingerOrder(expected, {true, true, true, true, true}, PalmPixel(v), turn[v]);
+  }
   PerFinger<const Choice*> current = {}, best = {};
   double best_cost = 1e9;
   const auto assign = [&](auto&& self, int f, double cost) -> void {
@@ -159,7 +172,7 @@ void FingertipTracker::Impl::Search() {
             regions[g] = blobs[v][v == 0 ? current[g]->left : current[g]->right].centre;
           }
         }
-        if (!InFingerOrder(regions, seen, PalmPixel(v), turn[v])) cost += 1;
+        if (in_order[v] && !InFingerOrder(regions, seen, PalmPixel(v), turn[v])) cost += 1;
       }
       if (cost < best_cost) {
         best_cost = cost;
