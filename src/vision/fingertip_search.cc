@@ -27,7 +27,8 @@ PerFinger<bool> FingertipTracker::Impl::FindDoubtful() const {
       pair[f - 1] = views[v].active[f - 1];
       pair[f] = views[v].active[f];
       if (!InFingerOrder(views[v].region, pair, PalmPixel(v), turn[v])) {
-        doubtful[f - 1] = doubtful[f] = true;
+        doubtful[f - 1] = doubtful[f - 1] || jump[f - 1] >= kOdd;
+        doubtful[f] = doubtful[f] || jump[f] >= kOdd;
       }
     }
   }
@@ -172,7 +173,7 @@ void FingertipTracker::Impl::Search() {
             regions[g] = blobs[v][v == 0 ? current[g]->left : current[g]->right].centre;
           }
         }
-        if (in_order[v] && !InFingerOrder(regions, seen, PalmPixel(v), turn[v])) cost += 1;
+        if (in_order[v] && !InFingerOrder(regions, seen, PalmPixel(v), turn[v])) cost += 0.3;
       }
       if (cost < best_cost) {
         best_cost = cost;
