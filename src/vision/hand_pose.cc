@@ -496,8 +496,15 @@ HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
   other.X_WH.linear() = turn * fit.X_WH.linear();
   other.X_WH.translation() =
       pivot + turn * (fit.X_WH.translation() - pivot) + fit.X_WH.linear() * kShifts[way];
-  other = Solve(problem, model, other, 2 * options.iterations);
-  if (other.cost < fit.cost) fit = other;
+  // Both are judged by this frame alone: the past led into the wrong one.
+  HandPoseOptions free = options;
+  free.pose_sigma *= 10;
+  free.turn_sigma *= 10;
+  free.joint_sigma *= 10;
+  FitProblem now(model, cameras, observation, last, X_predicted, fit_scale, false, free);
+  other = Solve(now, model, other, 2 * options.iterations);
+  constexpr double kClearlyBetter = 1.5;
+  if (other.cost < Solve(now, model, fit, 0).cost - kClearlyBetter) fit = other;
   fit.frame = last.frame + 1;
   JudgeTips(model, observation, fit);
   return fit;
