@@ -30,7 +30,7 @@ inline PneumaticGains StiffHold() {
 
 struct GripOptions {
   double acceleration = 20;         // m/s^2, that the grip shall withstand besides gravity
-  double safety = 2.0;              // of the fingertip grip force
+  double safety = 2.5;              // of the fingertip grip force
   double min_force = 2.5;           // N
   double enclosing_pressure = 3.0;  // bar, of the involved fingers in a power grasp
   double thumb_distal_ratio = 0.3;

