@@ -10,9 +10,9 @@ namespace springgrasp {
 namespace {
 
 constexpr double kFingerRadius = 0.0088;  // m, of an adult's fingers
-constexpr double kTipRadius = 0.0095;    // m, with its cap
-constexpr double kPalmRadius = 0.012;    // m, half the thickness of a palm
-constexpr double kBallSpacing = 0.014;   // m
+constexpr double kTipRadius = 0.0095;     // m, with its cap
+constexpr double kPalmRadius = 0.012;     // m, half the thickness of a palm
+constexpr double kBallSpacing = 0.014;    // m
 
 void AddBone(HandModel& model, int node, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
              double radius) {

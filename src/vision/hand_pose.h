@@ -20,7 +20,7 @@ struct HandPoseOptions {
   double tip_sigma = 0.003;   // m, of a fully trusted fingertip
   double ball_sigma_px = 5;   // of a ball outside the mask
   double skin_sigma_px = 5;   // of the mask's outline off that of the balls
-  double mask_reach_px = 5;  // beyond, a mask residual says no more: objects hide the hand
+  double mask_reach_px = 5;   // beyond, a mask residual says no more: objects hide the hand
   double pose_sigma = 0.02;   // m per frame, about the predicted position
   double turn_sigma = 0.12;   // rad per frame
   double joint_sigma = 0.15;  // rad per frame

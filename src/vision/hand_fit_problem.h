@@ -1,0 +1,86 @@
+// The least-squares problem of hand_pose.h, shared by its sources only.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "vision/hand_pose.h"
+
+namespace springgrasp {
+
+// A mask with what the fit asks of it.
+struct MaskField {
+  const HandMask* mask = nullptr;
+  cv::Mat outside;                       // CV_32F, px of the picture to the nearest mask entry
+  std::vector<Eigen::Vector2d> samples;  // px, of the mask's outline
+};
+
+// `wanted` samples of the outline not farther than `reach_px` from `middle`.
+MaskField MakeField(const HandMask& mask, int wanted, const Eigen::Vector2d& middle,
+                    double reach_px);
+
+// Variables: position of H (m), rotation vector applied from the left to R_start, joints, log
+// scale. Residuals, in this order:
+//   tips          3 per finger    (tip - seen) / sigma
+//   balls         1 per view      distance outside the mask
+//   outline       1 per view      signed distance from the outline of the balls
+//   motion        6               deviation from the predicted pose
+//   joints        2 n             deviation from the last and from the resting posture
+//   couplings     1 each          DIP - 2/3 PIP
+//   scale         2               deviation from the last one and from the model's
+//   palm          1               back of the hand faces away from the cameras (first frame)
+class FitProblem {
+ public:
+  FitProblem(const HandModel& model, const StereoCameras& cameras,
+             const HandObservation& observation, const HandFit& last, const Pose& X_predicted,
+             bool fit_scale, bool first, const HandPoseOptions& options);
+
+  int num_variables() const { return 7 + n_; }
+  int num_residuals() const { return num_residuals_; }
+
+  Eigen::VectorXd Variables(const HandFit& fit) const {
+    Eigen::VectorXd x(num_variables());
+    x << fit.X_WH.translation(), Eigen::Vector3d::Zero(), fit.q, std::log(fit.scale);
+    return x;
+  }
+
+  void SetStart(const HandFit& fit) { R_start_ = fit.X_WH.linear(); }
+
+  HandFit Result(const Eigen::VectorXd& x) const;
+  void Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J);
+
+ private:
+  Eigen::Vector3d Point(const HandFit& fit, int node, const Eigen::Vector3d& p_B) const {
+    return fit.X_WH * (X_HB_[node] * (fit.scale * p_B));
+  }
+
+  // d p_W / d variables, 3 x (7 + n), into J_point_.
+  void PointJacobian(const HandFit& fit, int node, const Eigen::Vector3d& p_W);
+
+  const HandModel& model_;
+  const StereoCameras& cameras_;
+  const HandObservation& observation_;
+  const HandFit& last_;
+  Pose X_predicted_;
+  bool fit_scale_, first_;
+  const HandPoseOptions& options_;
+  int n_ = 0, num_residuals_ = 0;
+  Eigen::Matrix3d R_start_ = Eigen::Matrix3d::Identity();
+  std::array<MaskField, 2> fields_;
+  std::vector<std::vector<int>> node_motion_;  // moving ancestors of each node
+  KinematicTree scaled_;
+  std::vector<Pose> X_HB_;
+  Eigen::Matrix3d Jl_ = Eigen::Matrix3d::Identity();
+  Eigen::Matrix<double, 3, Eigen::Dynamic> J_point_;
+  std::vector<Eigen::Vector3d> p_W_;
+  std::vector<Eigen::Vector2d> pixel_;
+  std::vector<Eigen::Matrix<double, 2, 3>> J_pixel_;
+  std::vector<double> radius_;
+};
+
+// Levenberg-Marquardt from `start`; with no iterations it only gives the cost there.
+HandFit Solve(FitProblem& fit, const HandModel& model, const HandFit& start, int iterations);
+
+}  // namespace springgrasp
