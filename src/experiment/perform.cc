@@ -4,28 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "control/grip.h"
 #include "experiment/arm_reference.h"
+#include "experiment/trial_watch.h"
 #include "sim/model_index.h"
 
 namespace springgrasp {
 namespace {
 
-constexpr double kGravity = 9.81;        // m/s^2
-constexpr double kLostAfter = 0.2;       // s without any hand contact: the object is lost
-constexpr double kLostBeyond = 0.08;     // m moved in the hand: the object is lost
-constexpr double kMinRise = 0.5;         // of the lift height, that the object must have risen
-constexpr double kOpposedWindow = 0.02;  // s, to see the first opposed contact
-constexpr double kHoldFrom = 0.7;        // of the grip phase, when the fingers have settled
-constexpr double kGripWindow = 0.25;     // s, to see whether a finger touches at the end of grip
-
-double TiltDeg(const Pose& a, const Pose& b) {
-  return RotationDistance(Eigen::Quaterniond(a.linear()), Eigen::Quaterniond(b.linear())) * 180 /
-         std::numbers::pi;
-}
+constexpr double kGravity = 9.81;     // m/s^2
+constexpr double kMinRise = 0.5;      // of the lift height, that the object must have risen
+constexpr double kHoldFrom = 0.7;     // of the grip phase, when the fingers have settled
+constexpr double kGripWindow = 0.25;  // s, to see whether a finger touches at the end of grip
 
 // One trial under way: references, controllers, bookkeeping.
 class Performer {
@@ -43,15 +35,11 @@ class Performer {
         options_(options),
         criteria_(options.criteria),
         observer_(observer),
-        roles_(ClassifyGeoms(simulation.model())),
-        window_(roles_, object_),
-        opposed_window_(roles_, object_) {
+        watch_(simulation, robot, object_, criteria_, performance_) {
     for (int f = 0; f < kNumFingers; ++f) {
       tip_frames_[f] = hand.FrameIndex(fmt::format("hand_r_{}_tip", kFingerNames[f]));
     }
     arm_frame_ = arm.FrameIndex("hand_r_H");
-    const Pose X_WO = ObjectPose();
-    X_WO_start_ = X_WO;
   }
 
   Performance Run() {
@@ -61,15 +49,6 @@ class Performer {
   }
 
  private:
-  Pose ObjectPose() const {
-    return ReadBodyState(simulation_.model(), simulation_.data(), object_).X_WB;
-  }
-  Pose ObjectInHand() const { return robot_.HandPose(simulation_).inverse() * ObjectPose(); }
-
-  void Record(Outcome outcome, const std::string& message) {
-    performance_.events.push_back({simulation_.time(), outcome, message});
-  }
-
   HandVector GripTorque(const RobotState& state) const {
     const GripOptions& grip = options_.grip;
     if (plan_.type == "power") {
@@ -132,117 +111,11 @@ class Performer {
                                          hand_target, state, dt, hand_memory_);
     robot_.Write(command, simulation_);
     simulation_.Step();
-    if (simulation_.diverged()) {
-      Record(Outcome::kDiverged, simulation_.diverged()->warning);
-      return false;
-    }
-    Watch(dt);
+    watch_.Step(dt);
+    if (simulation_.diverged()) return false;
     Sample(state, command);
     if (observer_) observer_(simulation_, performance_.reached);
-    return over_ == false;
-  }
-
-  // Everything that is looked at after every step.
-  void Watch(double dt) {
-    const Pose X_WO = ObjectPose();
-    const Pose X_WH = robot_.HandPose(simulation_);
-    const double torsion = simulation_.model().geom_friction[1];
-    window_.Add(simulation_.contacts(), X_WO, X_WH, torsion, dt);
-    WatchTable();
-    if (!opposed_) WatchFirstContact(X_WO, X_WH, torsion, dt);
-    if (performance_.reached >= Phase::kLift) WatchHeld(X_WO, X_WH, dt);
-  }
-
-  void WatchTable() {
-    double tips = 0, others = 0;
-    for (const ContactPoint& c : simulation_.contacts()) {
-      const GeomRole &a = roles_[c.geom1], &b = roles_[c.geom2];
-      const auto is_support = [](const GeomRole& r) {
-        return r.part == GeomPart::kTable || r.part == GeomPart::kRing ||
-               r.part == GeomPart::kFloor;
-      };
-      const GeomRole& robot_part = is_support(a) ? b : a;
-      if (is_support(a) == is_support(b)) continue;
-      if (robot_part.part == GeomPart::kFinger && robot_part.phalanx == 1)
-        tips += c.normal_force;
-      else if (robot_part.hand() || robot_part.part == GeomPart::kArm)
-        others += c.normal_force;
-    }
-    if (tips > criteria_.max_tip_table_force || others > criteria_.max_table_force) {
-      Record(Outcome::kCollided,
-             fmt::format("table or ring touched with {:.1f} N in {}", std::max(tips, others),
-                         PhaseName(performance_.reached)));
-      over_ = true;
-    }
-  }
-
-  // Bodies of the robot that touch the object now, for messages.
-  std::string Touching() const {
-    std::string names;
-    for (const ContactPoint& c : simulation_.contacts()) {
-      const int other = c.body1 == object_ ? c.body2 : c.body2 == object_ ? c.body1 : -1;
-      if (other < 0) continue;
-      const std::string name = NameOf(simulation_.model(), mjOBJ_BODY, other);
-      if (names.find(name) == std::string::npos) names += (names.empty() ? "" : ", ") + name;
-    }
-    return names.empty() ? "nothing" : names;
-  }
-
-  void WatchFirstContact(const Pose& X_WO, const Pose& X_WH, double torsion, double dt) {
-    opposed_window_.Add(simulation_.contacts(), X_WO, X_WH, torsion, dt);
-    const double moved = (X_WO.translation() - X_WO_start_.translation()).norm();
-    const double tilt = TiltDeg(X_WO, X_WO_start_);
-    if (performance_.reached > Phase::kSettle &&
-        (moved > criteria_.max_early_motion || tilt > criteria_.max_early_tilt_deg)) {
-      Record(Outcome::kCollided,
-             fmt::format("object moved {:.0f} mm and tilted {:.0f} degrees before the first "
-                         "opposed contact, in {}, touching {}",
-                         1e3 * moved, tilt, PhaseName(performance_.reached), Touching()));
-      over_ = true;
-      return;
-    }
-    const ContactWindow window = opposed_window_.Mean();
-    if (window.duration >= kOpposedWindow) {
-      opposed_ = IsOpposed(window, criteria_);
-      opposed_window_.Clear();
-    }
-  }
-
-  // Slip since the end of the grip, and whether the object is still there.
-  void WatchHeld(const Pose& X_WO, const Pose& X_WH, double dt) {
-    const Pose X_HO = X_WH.inverse() * X_WO;
-    const double slip = (X_HO.translation() - X_HO_grip_.translation()).norm();
-    const double rotation = RotationDistance(Eigen::Quaterniond(X_HO.linear()),
-                                             Eigen::Quaterniond(X_HO_grip_.linear()));
-    performance_.slip = std::max(performance_.slip, slip);
-    performance_.rotation = std::max(performance_.rotation, rotation);
-    if (!slipped_ &&
-        (slip > criteria_.max_slip || rotation * 180 / std::numbers::pi > criteria_.max_slip_deg)) {
-      slipped_ = true;
-      slip_event_ = {
-          simulation_.time(), Outcome::kSlipped,
-          fmt::format("{:.0f} mm and {:.0f} degrees in the hand, in {}", 1e3 * slip,
-                      rotation * 180 / std::numbers::pi, PhaseName(performance_.reached))};
-    }
-    const bool touched = std::any_of(simulation_.contacts().begin(), simulation_.contacts().end(),
-                                     [&](const ContactPoint& c) {
-                                       return (c.body1 == object_ && roles_[c.geom2].hand()) ||
-                                              (c.body2 == object_ && roles_[c.geom1].hand());
-                                     });
-    untouched_ = touched ? 0 : untouched_ + dt;
-    if (untouched_ > kLostAfter || slip > kLostBeyond) Dropped("the hand lost the object");
-  }
-
-  void Dropped(const std::string& message) {
-    if (over_) return;
-    const Phase phase = performance_.reached;
-    const Outcome outcome = phase == Phase::kLift   ? Outcome::kDroppedLift
-                            : phase == Phase::kHold ? Outcome::kDroppedHold
-                                                    : Outcome::kDroppedDisturb;
-    // A fall begins as a slip; the fall is what counts.
-    slipped_ = false;
-    Record(outcome, message);
-    over_ = true;
+    return !watch_.over();
   }
 
   void Sample(const RobotState& state, const RobotCommand& command) {
@@ -251,10 +124,10 @@ class Performer {
     TrajectorySample sample;
     sample.t = simulation_.time();
     sample.phase = performance_.reached;
-    sample.X_WO = ObjectPose();
+    sample.X_WO = watch_.ObjectPose();
     sample.X_WH = robot_.HandPose(simulation_);
     sample.X_WH_planned = planned_;
-    const HandLoad load = LoadOnBody(simulation_.contacts(), roles_, object_);
+    const HandLoad load = watch_.Load();
     for (int f = 0; f < kNumFingers; ++f) {
       sample.p_WF[f] = robot_.Fingertip(simulation_, f);
       sample.normal[f] = load.normal[f];
@@ -280,7 +153,7 @@ class Performer {
     for (long i = 0; i < StepsFor(criteria_.settle); ++i) {
       if (!Step(Rest(plan_.arm.front()), plan_.hand.front(), 0, 0)) return false;
     }
-    X_WO_start_ = ObjectPose();
+    watch_.Settled();
     return true;
   }
 
@@ -322,18 +195,18 @@ class Performer {
     const double ramp = options_.grip.ramp;
     for (long i = 0; i < StepsFor(criteria_.grip); ++i) {
       const double t = static_cast<double>(i) * simulation_.timestep();
-      if (t <= criteria_.grip - kGripWindow) window_.Clear();
+      if (t <= criteria_.grip - kGripWindow) watch_.window().Clear();
       if (!q_held_ && t >= kHoldFrom * criteria_.grip) q_held_ = robot_.Read(simulation_).hand_q;
       if (!Step(Rest(plan_.arm.back()), plan_.hand.back(), std::clamp(t / ramp, 1e-3, 1.0), 0)) {
         return false;
       }
     }
-    performance_.grip = window_.Mean();
-    X_HO_grip_ = ObjectInHand();
+    performance_.grip = watch_.window().Mean();
+    watch_.Gripped();
     for (int f = 0; f < kNumFingers; ++f) {
       if (!plan_.involved[f] || performance_.grip.normal[f] >= criteria_.contact_force) continue;
-      Record(Outcome::kMissed,
-             fmt::format("{} does not touch at the end of grip", kFingerNames[f]));
+      watch_.Record(Outcome::kMissed,
+                    fmt::format("{} does not touch at the end of grip", kFingerNames[f]));
       return false;
     }
     return true;
@@ -341,18 +214,18 @@ class Performer {
 
   bool Lift() {
     Enter(Phase::kLift);
-    const double start = ObjectPose().translation().z();
+    const double start = watch_.ObjectPose().translation().z();
     for (long i = 0; i < StepsFor(criteria_.lift); ++i) {
       const double t = static_cast<double>(i) * simulation_.timestep();
-      window_.Clear();
+      watch_.window().Clear();
       if (!Step(ArmReferenceAt(plan_.lift, plan_.dt, t), plan_.hand.back(), 1,
                 std::min(1.0, t / (0.2 * criteria_.lift)))) {
         return false;
       }
     }
-    const double risen = ObjectPose().translation().z() - start;
-    if (risen < kMinRise * criteria_.lift_height || window_.Mean().support_normal > 0) {
-      Dropped(fmt::format("object risen by {:.0f} mm only", 1e3 * risen));
+    const double risen = watch_.ObjectPose().translation().z() - start;
+    if (risen < kMinRise * criteria_.lift_height || watch_.window().Mean().support_normal > 0) {
+      watch_.Dropped(fmt::format("object risen by {:.0f} mm only", 1e3 * risen));
       return false;
     }
     return true;
@@ -361,16 +234,16 @@ class Performer {
   bool Hold() {
     Enter(Phase::kHold);
     const double quiet = 0.5;  // s, let the lift die out before creep is measured
-    Eigen::Vector3d p_HO_quiet = ObjectInHand().translation();
+    Eigen::Vector3d p_HO_quiet = watch_.ObjectInHand().translation();
     for (long i = 0; i < StepsFor(criteria_.hold); ++i) {
       const double t = static_cast<double>(i) * simulation_.timestep();
-      if (t <= quiet) p_HO_quiet = ObjectInHand().translation();
-      if (t <= criteria_.hold - criteria_.window) window_.Clear();
+      if (t <= quiet) p_HO_quiet = watch_.ObjectInHand().translation();
+      if (t <= criteria_.hold - criteria_.window) watch_.window().Clear();
       if (!Step(Rest(plan_.lift.back()), plan_.hand.back(), 1, 1)) return false;
     }
-    performance_.creep =
-        (ObjectInHand().translation() - p_HO_quiet).norm() / std::max(0.1, criteria_.hold - quiet);
-    performance_.hold = window_.Mean();
+    performance_.creep = (watch_.ObjectInHand().translation() - p_HO_quiet).norm() /
+                         std::max(0.1, criteria_.hold - quiet);
+    performance_.hold = watch_.window().Mean();
     return true;
   }
 
@@ -406,19 +279,20 @@ class Performer {
 
   bool After() {
     Enter(Phase::kAfter);
-    window_.Clear();
+    watch_.window().Clear();
     for (long i = 0; i < StepsFor(criteria_.after); ++i) {
       if (!Step(Rest(plan_.lift.back()), plan_.hand.back(), 1, 1)) return false;
     }
-    performance_.after = window_.Mean();
-    if (slipped_) performance_.events.push_back(slip_event_);
+    performance_.after = watch_.window().Mean();
+    if (watch_.slip()) performance_.events.push_back(*watch_.slip());
     if (performance_.shake_fraction < criteria_.min_shake_fraction) {
-      Record(Outcome::kError, fmt::format("the arm reached {:.0f} % of the shaking amplitude only",
-                                          100 * performance_.shake_fraction));
+      watch_.Record(Outcome::kError,
+                    fmt::format("the arm reached {:.0f} % of the shaking amplitude only",
+                                100 * performance_.shake_fraction));
     }
     for (const ContactWindow* window : {&performance_.hold, &performance_.after}) {
-      const ContactCheck check = CheckContacts(plan_.type, *window, plan_.shape, criteria_);
-      if (!check.ok) Record(Outcome::kWrongContacts, check.reason);
+      const ContactCheck check = CheckContacts(plan_.type, *window, options_.shape, criteria_);
+      if (!check.ok) watch_.Record(Outcome::kWrongContacts, check.reason);
     }
     Enter(Phase::kDone);
     return true;
@@ -433,20 +307,17 @@ class Performer {
   const PerformOptions& options_;
   const TrialCriteria& criteria_;
   const StepObserver& observer_;
-  const std::vector<GeomRole> roles_;
   const PneumaticHandModel hand_model_;
-  ContactAccumulator window_, opposed_window_;
   PerFinger<int> tip_frames_;
   int arm_frame_ = 0;
   ArmControlState arm_memory_;
   HandControlState hand_memory_;
   Performance performance_;
-  Pose X_WO_start_, X_HO_grip_, planned_;
-  TrialEvent slip_event_;
-  bool opposed_ = false, slipped_ = false, over_ = false;
+  TrialWatch watch_;  // writes into performance_, so it stands after it
+  Pose planned_ = Pose::Identity();
   std::optional<HandVector> q_held_;
   HandVector hand_planned_ = HandVector::Zero();
-  double untouched_ = 0, next_sample_ = 0;
+  double next_sample_ = 0;
 };
 
 }  // namespace

@@ -40,6 +40,7 @@ struct GripOptions {
 };
 
 struct PerformOptions {
+  Shape shape;  // of the object as it is, for the verdict; the plan has the believed
   TrialCriteria criteria;
   GripOptions grip;
   ArmGains arm;

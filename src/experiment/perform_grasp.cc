@@ -70,7 +70,7 @@ void RecordPlan(const PlanResult& plan, TrialResult& result) {
   v["reach_duration_s"] = plan.motion.T;
 }
 
-void RecordPerformance(const Performance& p, const GraspPlan& plan, const TrialCriteria& criteria,
+void RecordPerformance(const Performance& p, const std::string& type, const PerformOptions& options,
                        TrialResult& result) {
   auto& v = result.values;
   v["simulated_s"] = p.duration;
@@ -88,7 +88,7 @@ void RecordPerformance(const Performance& p, const GraspPlan& plan, const TrialC
       v[fmt::format("load_share_{}", kFingerNames[f])] = window.LoadShare(f);
     }
     v["palm_normal_n"] = window.palm_normal;
-    const ContactCheck check = CheckContacts(plan.type, window, plan.shape, criteria);
+    const ContactCheck check = CheckContacts(type, window, options.shape, options.criteria);
     v["opposition_deg"] = check.opposition_deg;
     v["epsilon"] = check.epsilon;
     v["volume"] = check.volume;
@@ -137,6 +137,7 @@ TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
   simulation.Forward();
   PerformOptions perform;
   perform.criteria = options.criteria;
+  perform.shape = scene.objects[0].shape.value_or(plan.plan->shape);
   perform.max_finger_force = scene.max_finger_force;
   std::optional<Filmer> filmer;
   if (!options.video.empty()) filmer.emplace(simulation, scene, options);
@@ -153,7 +154,7 @@ TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
   result.outcome = verdict.outcome;
   result.message = verdict.message;
   result.phase = std::string(PhaseName(performance.reached));
-  RecordPerformance(performance, *plan.plan, options.criteria, result);
+  RecordPerformance(performance, grasp.type, perform, result);
   return result;
 }
 

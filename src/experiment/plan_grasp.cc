@@ -20,6 +20,8 @@ constexpr double kSlower[] = {1.0, 1.4, 2.0};
 constexpr double kClosed = 1.35;  // fraction of T at which the fingers are planned closed
 constexpr double kApproachClearance = 0.02;  // m, between object and open hand on its way
 constexpr double kWay = 0.72;                // of T, then the object enters the hand
+// The hand is not fully open on its way yet, so its open outline may cut the object a little (tuned
+// with experiments/first_grasps, seeds below 1000).
 constexpr double kBlocked = -0.01;         // m, less than this on the way and another pose is tried
 constexpr double kWaitClearance = 0.015;   // m, between object and waiting fingers
 constexpr double kMaxEarlyFlexion = 0.25;  // rad

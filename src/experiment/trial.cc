@@ -63,7 +63,8 @@ void HoldOpen(Demonstration& demonstration) {
   }
 }
 
-// Contract: an involved finger seen in fewer than 60 % of frames, or not within 0.15 s of contact.
+// An involved finger seen in fewer than 60 % of frames, or not in the last 0.15 s, where the
+// demonstrating hand holds the object (the contract counts from the contact).
 std::string Untracked(const Demonstration& demonstration, const PerFinger<bool>& involved) {
   const double end = demonstration.samples.back().t;
   for (int f = 0; f < kNumFingers; ++f) {
