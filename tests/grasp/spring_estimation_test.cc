@@ -19,18 +19,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-CentralForce ReachForce(double gamma) {
-  CentralForce force;
-  force.t = EvenTimes(1.0, 0.01);
-  force.a.resize(force.t.size());
-  for (Index i = 0; i < force.t.size(); ++i) {
-    const double s = force.t[i];
-    force.a[i] = std::abs(0.3 * (60 * s - 180 * s * s + 120 * s * s * s));
-  }
-  force.gamma = gamma;
-  return force;
-}
-
 VectorXd TrueConstants(const SpringSystem& system) {
   VectorXd k(static_cast<Index>(system.springs.size()));
   for (Index e = 0; e < k.size(); ++e) k[e] = system.springs[static_cast<std::size_t>(e)].k;
@@ -78,7 +66,7 @@ TEST(SpringEstimation, ExactDataGiveTheConstantsBackByRegressionAlone) {
   for (const int dim : {2, 3}) {
     for (const bool power : {true, false}) {
       const SpringSystem system = GraspSystem(power, dim);
-      const auto o = Demonstrate(system, ReachForce(0.04), 30, 1.5, 0, engine, true);
+      const auto o = Demonstrate(system, ReachForce(0.04, 0.01), 30, 1.5, 0, engine, true);
       const SpringEstimate estimate = EstimateSprings({o}, {.trajectory_fit = false});
       EXPECT_LT(RelativeError(estimate.linear.k, TrueConstants(system)), 1e-8);
       EXPECT_LT(RelativeError(estimate.k_non_negative, TrueConstants(system)), 1e-8);
@@ -93,7 +81,7 @@ TEST(SpringEstimation, TrajectoryFitFindsTheConstantsFromPositionsAlone) {
   RandomEngine engine = MakeStream(2, 0, "positions");
   for (const int dim : {2, 3}) {
     const SpringSystem system = GraspSystem(true, dim);
-    const auto o = Demonstrate(system, ReachForce(0.04), 23, 1.5, 0, engine, false);
+    const auto o = Demonstrate(system, ReachForce(0.04, 0.01), 23, 1.5, 0, engine, false);
     // With the demonstration's own step nothing but the constants is left to be found.
     const SpringEstimate exact = EstimateSprings({o}, {.step = 0.004});
     EXPECT_LT(RelativeError(exact.k, TrueConstants(system)), 1e-6);
@@ -112,7 +100,7 @@ TEST(SpringEstimation, TrajectoryFitBeatsTheRegressionOnNoisyData) {
     for (std::uint64_t draw = 0; draw < 4; ++draw) {
       RandomEngine engine = MakeStream(3, draw, "noise");
       const auto o =
-          Demonstrate(GraspSystem(power), ReachForce(0.04), 23, 1.5, 0.001, engine, false);
+          Demonstrate(GraspSystem(power), ReachForce(0.04, 0.01), 23, 1.5, 0.001, engine, false);
       const SpringEstimate estimate = EstimateSprings({o}, {.step = 0.01});
       linear.push_back(RelativeError(estimate.linear.k, truth));
       fitted.push_back(RelativeError(estimate.k, truth));
@@ -134,7 +122,7 @@ TEST(SpringEstimation, TrajectoryFitBeatsTheRegressionOnNoisyData) {
 TEST(SpringEstimation, GainDelayClosingAndSwitchAreFoundTogetherWithTheConstants) {
   RandomEngine engine = MakeStream(4, 0, "gains");
   const SpringSystem system = GraspSystem(true);
-  CentralForce force = ReachForce(0.05);
+  CentralForce force = ReachForce(0.05, 0.01);
   force.delay = 0.12;
   force.beta = 2;
   force.blend = 0.05;
@@ -164,7 +152,7 @@ TEST(SpringEstimation, PoolingDemonstrationsReducesTheError) {
     std::vector<SpringObservation> observations;
     for (int i = 0; i < 3; ++i) {
       observations.push_back(
-          Demonstrate(system, ReachForce(0.03 + 0.01 * i), 23, 1.5, 0.001, engine, false));
+          Demonstrate(system, ReachForce(0.03 + 0.01 * i, 0.01), 23, 1.5, 0.001, engine, false));
     }
     single.push_back(
         RelativeError(EstimateSprings({observations[0]}, coarse).k, TrueConstants(system)));
@@ -176,7 +164,7 @@ TEST(SpringEstimation, PoolingDemonstrationsReducesTheError) {
 TEST(SpringEstimation, MissingSamplesAreLeftOut) {
   RandomEngine engine = MakeStream(6, 0, "missing");
   const SpringSystem system = GraspSystem(true);
-  auto o = Demonstrate(system, ReachForce(0.04), 50, 1.5, 0, engine, true);
+  auto o = Demonstrate(system, ReachForce(0.04, 0.01), 50, 1.5, 0, engine, true);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   o.p_smooth = o.p;
   for (Index i = 10; i < 25; ++i) {
@@ -192,7 +180,7 @@ TEST(SpringEstimation, AnUndeterminedConstantIsSaidPlainly) {
   RandomEngine engine = MakeStream(7, 0, "undetermined");
   SpringSystem system = GraspSystem(true);
   // A rigid pair: both at rest on their contacts, so the spring between them never stretches.
-  auto o = Demonstrate(system, ReachForce(0.04), 30, 1.5, 0, engine, true);
+  auto o = Demonstrate(system, ReachForce(0.04, 0.01), 30, 1.5, 0, engine, true);
   for (Index i = 0; i < o.t.size(); ++i) {
     const Eigen::RowVector2d ring = o.p.row(i).segment(6, 2), pinkie = o.p.row(i).segment(8, 2);
     const double now = (ring - pinkie).norm();
@@ -228,7 +216,7 @@ TEST(SpringEstimation, NonNegativeSolutionMeetsTheOptimalityConditions) {
 TEST(SpringEstimation, UnusableInputIsRefused) {
   RandomEngine engine = MakeStream(9, 0, "refuse");
   const SpringSystem system = GraspSystem(true);
-  const auto good = Demonstrate(system, ReachForce(0.04), 23, 1.0, 0, engine, false);
+  const auto good = Demonstrate(system, ReachForce(0.04, 0.01), 23, 1.0, 0, engine, false);
   EXPECT_THROW(EstimateSprings({}), Error);
   auto bad = good;
   bad.t[3] = bad.t[2];

@@ -39,19 +39,6 @@ ForceProfile SineForce(double amplitude, double period) {
   return {[=](double t) { return -amplitude * std::sin(2 * kPi * t / period); }, {}};
 }
 
-// Central force of a straight minimum-jerk reach.
-CentralForce ReachForce(double gamma) {
-  CentralForce force;
-  force.t = EvenTimes(1.0, 0.005);
-  force.a.resize(force.t.size());
-  for (Index i = 0; i < force.t.size(); ++i) {
-    const double s = force.t[i];
-    force.a[i] = std::abs(0.3 * (60 * s - 180 * s * s + 120 * s * s * s));
-  }
-  force.gamma = gamma;
-  return force;
-}
-
 MatrixXd PointsAt(const MatrixXd& rows, Index i, int dim) {
   const Eigen::RowVectorXd row = rows.row(i);
   return Eigen::Map<const MatrixXd>(row.data(), dim, row.size() / dim);
@@ -210,7 +197,7 @@ TEST(SpringIntegrator, RunawayParametersGiveNothing) {
 TEST(SpringIntegrator, StepsAllocateNothing) {
   for (const int dim : {2, 3}) {
     const SpringSystem system = GraspSystem(true, dim);
-    const ForceProfile force = MakeForceProfile(ReachForce(0.04));
+    const ForceProfile force = MakeForceProfile(ReachForce(0.04, 0.005));
     SpringStepper stepper(system);
     MatrixXd p = GraspStart(dim), v = MatrixXd::Zero(dim, 5);
     ASSERT_TRUE(stepper.Step(force, 0, 0.005, p, v));
@@ -222,7 +209,7 @@ TEST(SpringIntegrator, StepsAllocateNothing) {
 
 TEST(SpringIntegrator, SensitivitiesAgreeWithCentralDifferences) {
   const SpringSystem system = GraspSystem(true);
-  CentralForce force = ReachForce(0.04);
+  CentralForce force = ReachForce(0.04, 0.005);
   force.blend = 0.1;
   force.delay = 0.1;
   force.beta = 1.5;

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <string>
 
 #include "base/random.h"
 #include "grasp/spring_system.h"
+#include "motion/central_force.h"
+#include "motion/dmp.h"
 
 namespace springgrasp {
 
@@ -67,6 +70,19 @@ inline Eigen::MatrixXd GraspStart(int dim = 2) {
   Eigen::MatrixXd p(dim, 5);
   for (int i = 0; i < 5; ++i) p.col(i) = system.anchors.col(i) / scale[i];
   return p;
+}
+
+// Central force of a straight minimum-jerk reach of 0.3 m in 1 s, sampled every `dt`.
+inline CentralForce ReachForce(double gamma, double dt) {
+  CentralForce force;
+  force.t = EvenTimes(1.0, dt);
+  force.a.resize(force.t.size());
+  for (Eigen::Index i = 0; i < force.t.size(); ++i) {
+    const double s = force.t[i];
+    force.a[i] = std::abs(0.3 * (60 * s - 180 * s * s + 120 * s * s * s));
+  }
+  force.gamma = gamma;
+  return force;
 }
 
 }  // namespace springgrasp

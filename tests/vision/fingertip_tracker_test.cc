@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "base/error.h"
@@ -45,6 +46,13 @@ double LargestError(const TrackedFrame& frame, const std::vector<Eigen::Vector3d
   return largest;
 }
 
+// The first frame starts the tracker; nothing where it finds no hand.
+std::optional<TrackedFrame> Track(FingertipTracker& tracker, const Frame& frame, int k,
+                                  RandomEngine& engine) {
+  if (k == 0) return tracker.Start(frame.left, frame.right);
+  return tracker.Update(frame.left, frame.right, engine);
+}
+
 TEST(FingertipTrackerTest, FollowsAClosingHandToAFewMillimetres) {
   const StereoCameras eyes = TestEyes();
   FingertipTracker tracker(eyes, Options());
@@ -52,14 +60,9 @@ TEST(FingertipTrackerTest, FollowsAClosingHandToAFewMillimetres) {
   std::vector<double> errors;
   for (int k = 0; k <= 20; ++k) {
     const Frame frame = Render(eyes, k, false);
-    TrackedFrame tracked;
-    if (k == 0) {
-      const auto start = tracker.Start(frame.left, frame.right);
-      ASSERT_TRUE(start);
-      tracked = *start;
-    } else {
-      tracked = tracker.Update(frame.left, frame.right, engine);
-    }
+    const std::optional<TrackedFrame> seen = Track(tracker, frame, k, engine);
+    ASSERT_TRUE(seen);
+    const TrackedFrame& tracked = *seen;
     EXPECT_EQ(tracked.num_seen(), kNumFingers) << "frame " << k;
     EXPECT_LT(LargestError(tracked, frame.tips), 0.012) << "frame " << k;
     for (int f = 0; f < kNumFingers; ++f) {
@@ -81,14 +84,9 @@ TEST(FingertipTrackerTest, AHiddenFingerIsMissingThenFoundAgain) {
   for (int k = 0; k <= 16; ++k) {
     const bool covered = k >= 4 && k < 10;
     const Frame frame = Render(eyes, k, covered);
-    TrackedFrame tracked;
-    if (k == 0) {
-      const auto start = tracker.Start(frame.left, frame.right);
-      ASSERT_TRUE(start);
-      tracked = *start;
-    } else {
-      tracked = tracker.Update(frame.left, frame.right, engine);
-    }
+    const std::optional<TrackedFrame> seen = Track(tracker, frame, k, engine);
+    ASSERT_TRUE(seen);
+    const TrackedFrame& tracked = *seen;
     if (covered) {
       EXPECT_FALSE(tracked.fingers[kRing].p_W) << "invented in frame " << k;
       EXPECT_EQ(tracked.fingers[kRing].confidence, 0);
