@@ -92,10 +92,10 @@ MaskField MakeField(const HandMask& mask, int wanted, const Eigen::Vector2d& mid
   return field;
 }
 
-FitProblem::FitProblem(const HandModel& model, const StereoCameras& cameras,
-                       const HandObservation& observation, const HandFit& last,
-                       const Pose& X_predicted, bool fit_scale, bool first,
-                       const HandPoseOptions& options)
+HandFitProblem::HandFitProblem(const HandModel& model, const StereoCameras& cameras,
+                               const HandObservation& observation, const HandFit& last,
+                               const Pose& X_predicted, bool fit_scale, bool first,
+                               const HandPoseOptions& options)
     : model_(model),
       cameras_(cameras),
       observation_(observation),
@@ -133,7 +133,7 @@ FitProblem::FitProblem(const HandModel& model, const StereoCameras& cameras,
   scaled_ = model.tree;
 }
 
-HandFit FitProblem::Result(const Eigen::VectorXd& x) const {
+HandFit HandFitProblem::Result(const Eigen::VectorXd& x) const {
   HandFit fit;
   fit.X_WH.translation() = x.head<3>();
   fit.X_WH.linear() = ExpRotation(x.segment<3>(3)).toRotationMatrix() * R_start_;
@@ -142,7 +142,7 @@ HandFit FitProblem::Result(const Eigen::VectorXd& x) const {
   return fit;
 }
 
-void FitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
+void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
   const HandFit fit = Result(x);
   for (std::size_t b = 0; b < scaled_.nodes.size(); ++b) {
     scaled_.nodes[b].X_PB.translation() = fit.scale * model_.tree.nodes[b].X_PB.translation();
@@ -265,7 +265,7 @@ void FitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::M
   }
 }
 
-void FitProblem::PointJacobian(const HandFit& fit, int node, const Eigen::Vector3d& p_W) {
+void HandFitProblem::PointJacobian(const HandFit& fit, int node, const Eigen::Vector3d& p_W) {
   J_point_.setZero(3, num_variables());
   J_point_.leftCols<3>().setIdentity();
   const Eigen::Vector3d lever = p_W - fit.X_WH.translation();
@@ -279,7 +279,7 @@ void FitProblem::PointJacobian(const HandFit& fit, int node, const Eigen::Vector
   J_point_.col(6 + n_) = lever;  // all lengths from H grow with exp(log scale)
 }
 
-HandFit Solve(FitProblem& fit, const HandModel& model, const HandFit& start, int iterations) {
+HandFit Solve(HandFitProblem& fit, const HandModel& model, const HandFit& start, int iterations) {
   const int n = model.tree.num_joints();
   fit.SetStart(start);
   LeastSquaresProblem problem;

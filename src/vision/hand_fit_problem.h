@@ -31,11 +31,11 @@ MaskField MakeField(const HandMask& mask, int wanted, const Eigen::Vector2d& mid
 //   couplings     1 each          DIP - 2/3 PIP
 //   scale         2               deviation from the last one and from the model's
 //   palm          1               back of the hand faces away from the cameras (first frame)
-class FitProblem {
+class HandFitProblem {
  public:
-  FitProblem(const HandModel& model, const StereoCameras& cameras,
-             const HandObservation& observation, const HandFit& last, const Pose& X_predicted,
-             bool fit_scale, bool first, const HandPoseOptions& options);
+  HandFitProblem(const HandModel& model, const StereoCameras& cameras,
+                 const HandObservation& observation, const HandFit& last, const Pose& X_predicted,
+                 bool fit_scale, bool first, const HandPoseOptions& options);
 
   int num_variables() const { return 7 + n_; }
   int num_residuals() const { return num_residuals_; }
@@ -81,6 +81,6 @@ class FitProblem {
 };
 
 // Levenberg-Marquardt from `start`; with no iterations it only gives the cost there.
-HandFit Solve(FitProblem& fit, const HandModel& model, const HandFit& start, int iterations);
+HandFit Solve(HandFitProblem& fit, const HandModel& model, const HandFit& start, int iterations);
 
 }  // namespace springgrasp

@@ -80,7 +80,7 @@ std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras&
   coarse.ball_sigma_px *= 2;
   HandFit any;
   any.q = model.rest;
-  FitProblem coarse_problem(model, cameras, observation, any, any.X_WH, true, true, coarse);
+  HandFitProblem coarse_problem(model, cameras, observation, any, any.X_WH, true, true, coarse);
   std::vector<HandFit> starts;
   for (const double bend : {0.3, 1.0, 1.7}) {
     for (const double tilt : {-0.4, 0.0, 0.5, 1.0}) {
@@ -98,7 +98,7 @@ std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras&
   }
   std::stable_sort(starts.begin(), starts.end(),
                    [](const HandFit& a, const HandFit& b) { return a.cost < b.cost; });
-  FitProblem problem(model, cameras, observation, any, any.X_WH, true, true, options);
+  HandFitProblem problem(model, cameras, observation, any, any.X_WH, true, true, options);
   std::optional<HandFit> best;
   for (std::size_t i = 0; i < std::min<std::size_t>(4, starts.size()); ++i) {
     const HandFit fit = Solve(problem, model, starts[i], 2 * options.start_iterations);
@@ -128,7 +128,7 @@ HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
   }
   Pose X_predicted = last.X_WH;
   X_predicted.translation() += velocity;
-  FitProblem problem(model, cameras, observation, last, X_predicted, fit_scale, false, options);
+  HandFitProblem problem(model, cameras, observation, last, X_predicted, fit_scale, false, options);
   HandFit start = last;
   start.X_WH = X_predicted;
   HandFit fit = Solve(problem, model, start, options.iterations);
@@ -153,7 +153,7 @@ HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
   free.pose_sigma *= 10;
   free.turn_sigma *= 10;
   free.joint_sigma *= 10;
-  FitProblem now(model, cameras, observation, last, X_predicted, fit_scale, false, free);
+  HandFitProblem now(model, cameras, observation, last, X_predicted, fit_scale, false, free);
   other = Solve(now, model, other, 2 * options.iterations);
   constexpr double kClearlyBetter = 1.5;
   if (other.cost < Solve(now, model, fit, 0).cost - kClearlyBetter) fit = other;
