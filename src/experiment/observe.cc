@@ -139,6 +139,7 @@ Observation ObserveMotion(ObserveStage& stage, const HandMotion& motion, RandomE
   };
   TrackDemonstrationOptions tracking;
   tracking.lead_in = -result.shown.samples.front().t;
+  if (stage.shows_object()) tracking.object = motion.object;
   result.tracked = TrackStereo(camera, stage.eyes(), &stage.hand().tree, tracking, engine, draw,
                                &result.summary);
   if (video) video->Finish();

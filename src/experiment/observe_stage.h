@@ -26,6 +26,7 @@ class ObserveStage {
   const DemonstratorHand& hand() const { return hand_; }
   const StereoCameras& eyes() const { return eyes_; }
   const mjModel& model() const { return simulation_.model(); }
+  bool shows_object() const { return object_drawn_; }
 
   // Puts hand and object as they are at one instant.
   void Show(const HandMotionSample& sample, const std::optional<DemonstratedObject>& object);

@@ -66,6 +66,7 @@ void RecordPlan(const PlanResult& plan, TrialResult& result) {
   v["limit_margin"] = plan.limit_margin;
   v["table_clearance_mm"] = 1e3 * plan.table_clearance;
   v["approach_clearance_mm"] = 1e3 * plan.clearance;
+  v["reach_joined"] = plan.join;
   v["free_angle_deg"] = plan.free_angle_deg;
   v["reach_duration_s"] = plan.motion.T;
 }

@@ -207,12 +207,11 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     reach.dt = dt;
     reach.T = motion.T;
     reach.q_hand = nominal_hand.q;
-    reach.path = [&](const Pose& X_OF) {
-      std::vector<Pose> X_WH = path(X_OF);
+    reach.path = path;
+    reach.clear = [&](const Pose& X_OF, const std::vector<Pose>& X_WH) {
       const Pose X_OW = (request.object.X_WO * X_OF).inverse();
-      const double clear =
-          ClearanceOnTheWay(body.hand, generate.shape, X_OW, X_WH, q_open, kWay * motion.T / dt);
-      return clear < kBlocked ? std::vector<Pose>() : X_WH;
+      return ClearanceOnTheWay(body.hand, generate.shape, X_OW, X_WH, q_open,
+                               kWay * motion.T / dt) >= kBlocked;
     };
     Arm arm = body.arm;
     for (int j = 0; j < arm.num_joints(); ++j) arm.q[arm.joints[j]] = request.arm_start[j];
@@ -238,6 +237,7 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     result.clearance = hand.clearance;
     result.limit_margin = planned.limit_margin;
     result.table_clearance = planned.table_clearance;
+    result.join = planned.join;
     result.free_angle_deg = RotationDistance(Eigen::Quaterniond::Identity(),
                                              Eigen::Quaterniond(planned.X_OF.linear())) *
                             180 / std::numbers::pi;

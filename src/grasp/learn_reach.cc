@@ -15,6 +15,8 @@ using Eigen::VectorXd;
 
 namespace {
 
+constexpr double kRest = 0.5;  // of T, of the hand at its goal
+
 // Velocity and acceleration at the ends decide how a cut movement is completed, and are what a
 // recording knows worst. They become those of a straight line through the velocities of the first
 // and last tenth of a second, the acceleration no larger than a minimum-jerk movement of the same
@@ -30,8 +32,11 @@ void CalmEnds(MotionSamples& samples, double dt) {
     RowVectorXd slope = t.transpose() * v / t.squaredNorm();
     const RowVectorXd value = v.colwise().mean() + (end == 0 ? t[0] : t[m - 1]) * slope;
     constexpr double kPeaks = 5.7735 / 1.875;  // peak acceleration / (peak speed / duration)
-    const double largest = kPeaks * value.head(3).norm() / duration;
-    if (slope.head(3).norm() > largest) slope *= largest / slope.head(3).norm();
+    for (const Eigen::Index part : {0, 3}) {   // translation, rotation
+      const double largest = kPeaks * value.segment(part, 3).norm() / duration;
+      const double now = slope.segment(part, 3).norm();
+      if (now > largest) slope.segment(part, 3) *= largest / now;
+    }
     samples.v.row(end) = value;
     samples.a.row(end) = slope;
   }
@@ -75,6 +80,23 @@ CompletedMotion Complete(const MotionSamples& samples, double dt) {
   return out;
 }
 
+// Followed by a rest at the last pose: else the last weights, which only the noise of the end would
+// decide, carry the hand away from its goal after T.
+MotionSamples ThenRest(const MotionSamples& samples, double duration, double dt) {
+  const Eigen::Index n = samples.size();
+  const auto rest = static_cast<Eigen::Index>(std::lround(duration / dt));
+  MotionSamples out;
+  out.t = VectorXd::LinSpaced(n + rest, 0, static_cast<double>(n + rest - 1) * dt);
+  out.x.resize(n + rest, samples.dimension());
+  out.x.topRows(n) = samples.x;
+  out.x.bottomRows(rest).rowwise() = samples.x.row(n - 1);
+  for (const auto part : {&MotionSamples::v, &MotionSamples::a}) {
+    (out.*part).setZero(n + rest, samples.dimension());
+    (out.*part).topRows(n) = samples.*part;
+  }
+  return out;
+}
+
 }  // namespace
 
 LearnedReach LearnReach(const std::vector<Pose>& X_OG, double dt, int basis_functions) {
@@ -92,7 +114,7 @@ LearnedReach LearnReach(const std::vector<Pose>& X_OG, double dt, int basis_func
   DmpOptions options;
   options.num_basis = basis_functions;
   options.tau = reach.T;
-  reach.dmp = LearnPoseDmp(completed.samples, R_goal, options);
+  reach.dmp = LearnPoseDmp(ThenRest(completed.samples, kRest * reach.T, dt), R_goal, options);
   const PoseMotion rollout = RolloutPoseDmp(reach.dmp, t.array() + reach.lead);
   double square = 0;
   for (Eigen::Index n = 0; n < count; ++n) {

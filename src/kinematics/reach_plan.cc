@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "kinematics/reach_path.h"
 
 namespace springgrasp {
 namespace {
@@ -99,44 +100,6 @@ std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRe
   return goal;
 }
 
-// Joint path of the poses that ends in q_goal: tracked backwards, then turned within the arm's
-// null space so that it begins at q_start if the hand does.
-ArmPath JointPath(const Arm& arm, const std::vector<Pose>& X_WH, const Eigen::VectorXd& q_goal,
-                  const std::optional<Eigen::VectorXd>& q_start) {
-  const std::vector<Pose> reversed(X_WH.rbegin(), X_WH.rend());
-  ArmPath path = TrackArmPath(arm, reversed, q_goal, kBigStep);
-  std::reverse(path.q.begin(), path.q.end());
-  if (!path.complete || !q_start) return path;
-  const Pose X_start = HandPose(arm, *q_start);
-  const bool begins_there = (X_start.translation() - X_WH.front().translation()).norm() < 1e-3 &&
-                            X_start.linear().isApprox(X_WH.front().linear(), 5e-3);
-  if (!begins_there) return path;
-  const Eigen::VectorXd difference = *q_start - path.q.front();
-  ArmIkOptions ik;
-  ik.limit_weight = 0;
-  const std::size_t n = path.q.size();
-  ArmPath joined;
-  for (std::size_t k = 0; k < n; ++k) {
-    const double rest = 1 - SmoothStep(static_cast<double>(k) / (0.8 * static_cast<double>(n)));
-    std::optional<Eigen::VectorXd> q = path.q[k];
-    if (rest > 0) q = SolveArmIk(arm, X_WH[k], path.q[k] + rest * difference, ik);
-    if (!q) {
-      joined.reason = fmt::format("the arm cannot come from its start posture (sample {})", k);
-      return joined;
-    }
-    if (k > 0) {
-      joined.max_step = std::max(joined.max_step, (*q - joined.q.back()).cwiseAbs().maxCoeff());
-      if (joined.max_step > kBigStep) {
-        joined.reason = fmt::format("the arm would jump coming from its start (sample {})", k);
-        return joined;
-      }
-    }
-    joined.q.push_back(*q);
-  }
-  joined.complete = true;
-  return joined;
-}
-
 // The whole path to one goal; false with a reason in `plan`.
 bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request,
               const ReachOptions& options, const Goal& goal, ReachPlan& plan) {
@@ -145,10 +108,6 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
   plan.tilt = goal.motion.tilt;
   plan.roll = goal.motion.roll;
   plan.X_WH = request.path(goal.motion.X_OF);
-  if (plan.X_WH.empty()) {
-    plan.reason = "the hand would touch the object on its way";
-    return false;
-  }
   plan.via_raise =
       RaisePath(hand, request.q_hand, request.table_height, request.table_edge, options.clearance,
                 static_cast<int>(std::lround(request.T / request.dt)), plan.X_WH);
@@ -157,16 +116,37 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
     plan.reason = "the end of the reach is out of the arm's reach";
     return false;
   }
-  ArmPath path = JointPath(arm, plan.X_WH, *q_end, request.q_start);
+  if (!request.clear(goal.motion.X_OF, plan.X_WH)) {
+    plan.reason = "the hand would touch the object on its way";
+    return false;
+  }
+  ReachPathRequest follow;
+  follow.X_WH = plan.X_WH;
+  follow.q_goal = *q_end;
+  follow.q_start = request.q_start;
+  follow.max_step = options.max_joint_speed * request.dt;
+  follow.latest_join = static_cast<int>(options.latest_join * request.T / request.dt);
+  follow.clear = [&](const std::vector<Pose>& X_WH, const std::vector<Eigen::VectorXd>& q,
+                     int end) {
+    constexpr int kStride = 3;
+    for (int k = 0; k < end; k += kStride) {
+      const Eigen::VectorXd& q_hand =
+          request.q_hand[std::min<std::size_t>(k, request.q_hand.size() - 1)];
+      if (HandAboveTable(hand, X_WH[k], q_hand, request.table_height, request.table_edge) <
+              kLeastClearance ||
+          ForearmAboveTable(arm, q[k], request) < kLeastClearance) {
+        return false;
+      }
+    }
+    return request.clear(goal.motion.X_OF, X_WH);
+  };
+  ReachPath path = FollowReach(arm, follow);
   if (!path.complete) {
     plan.reason = path.reason;
     return false;
   }
-  if (path.max_step > options.max_joint_speed * request.dt) {
-    plan.reason = fmt::format("the reach asks for {:.1f} rad/s of a joint, allowed are {:.1f}",
-                              path.max_step / request.dt, options.max_joint_speed);
-    return false;
-  }
+  plan.X_WH = path.X_WH;
+  plan.join = path.join * request.dt / request.T;
   std::vector<Pose> X_lift;
   const int lift_steps = static_cast<int>(std::lround(options.lift_duration / request.dt));
   for (int k = 0; k <= lift_steps; ++k) {
@@ -259,8 +239,8 @@ ReachPlan PlanWithin(const Arm& arm, const RobotHand& hand, const ReachRequest& 
 
 ReachPlan PlanReach(const Arm& arm, const RobotHand& hand, const ReachRequest& request,
                     const ReachOptions& options) {
-  ThrowUnless(!request.q_hand.empty() && request.path,
-              "a reach needs the hand's joints and a path of hand poses");
+  ThrowUnless(!request.q_hand.empty() && request.path && request.clear,
+              "a reach needs the hand's joints, a path of hand poses and what is in its way");
   ReachPlan plan = PlanWithin(arm, hand, request, options);
   const bool may_tilt = request.tilt_free && request.shape.kind != Shape::Kind::kSphere;
   if (plan.reachable || !may_tilt || options.last_resort_tilt <= options.max_tilt) return plan;

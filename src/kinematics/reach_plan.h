@@ -31,8 +31,9 @@ struct ReachRequest {
   std::optional<Eigen::VectorXd> q_start;
   // The hand's path for an object posed at X_WO * X_OF (F: the free motion of the grasp about the
   // object, identity: as demonstrated). Its last poses must be X_WO * X_OF * X_HO^-1.
-  // Empty: this pose is no candidate, the way to it is blocked.
   std::function<std::vector<Pose>(const Pose& X_OF)> path;
+  // Whether the object posed at X_WO * X_OF leaves that way free.
+  std::function<bool(const Pose& X_OF, const std::vector<Pose>& X_WH)> clear;
 };
 
 struct ReachOptions {
@@ -48,6 +49,8 @@ struct ReachOptions {
   double lift_duration = 1.5;                    // s
   int path_candidates = 12;                      // how many goals get a whole path
   double max_joint_speed = 4;                    // rad/s
+  // Where the arm cannot follow the hand's way from its start, it joins it by this part of T.
+  double latest_join = 0.55;
 };
 
 struct ReachPlan {
@@ -56,6 +59,7 @@ struct ReachPlan {
   Pose X_OF = Pose::Identity();        // the choice ...
   double yaw = 0, tilt = 0, roll = 0;  // ... by its angles, rad
   std::vector<Pose> X_WH;              // hand path with via height, at dt
+  double join = 0;                     // of T: before, the arm comes straight from its start
   std::vector<Eigen::VectorXd> arm;    // joint angles, rad, same samples
   std::vector<Eigen::VectorXd> lift;   // from the end of the reach straight up, at dt
   std::array<std::vector<Eigen::VectorXd>, 3> shake;  // about the lifted pose, along W's axes

@@ -54,6 +54,18 @@ double Saturate(double d, double reach, double sigma, double& slope) {
   return d / (root * sigma);
 }
 
+void MarkCuts(const ObjectDepth* object, MaskField& field) {
+  field.cut.assign(field.samples.size(), false);
+  if (object == nullptr) return;
+  const double step = 1.5 * field.mask->step;
+  for (std::size_t k = 0; k < field.samples.size(); ++k) {
+    for (const Eigen::Vector2d& side : {Eigen::Vector2d(step, 0), Eigen::Vector2d(-step, 0),
+                                        Eigen::Vector2d(0, step), Eigen::Vector2d(0, -step)}) {
+      if (object->Covers(field.samples[k] + side)) field.cut[k] = true;
+    }
+  }
+}
+
 }  // namespace
 
 MaskField MakeField(const HandMask& mask, int wanted, const Eigen::Vector2d& middle,
@@ -121,6 +133,7 @@ HandFitProblem::HandFitProblem(const HandModel& model, const StereoCameras& came
         cameras.view(v).X_WC.linear().col(2).dot(middle_W - cameras.view(v).X_WC.translation());
     fields_[v] = MakeField(*observation.masks[v], options.mask_samples, *middle,
                            cameras.view(v).fx * 0.2 / std::max(0.1, depth));
+    MarkCuts(observation.objects[v], fields_[v]);
     num_residuals_ += static_cast<int>(model.balls.size() + fields_[v].samples.size());
   }
   num_residuals_ += 6 + 2 * n_ + static_cast<int>(model.coupled.size()) + 3;
@@ -174,6 +187,7 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
   for (int v = 0; v < 2; ++v) {
     if (fields_[v].mask == nullptr) continue;
     const CameraModel& camera = cameras_.view(v);
+    const ObjectDepth* object = observation_.objects[v];
     pixel_.resize(num_balls);
     J_pixel_.resize(num_balls);
     radius_.resize(num_balls);
@@ -185,6 +199,7 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
       const int at = row + static_cast<int>(i);
       // The forearm may be sleeved: its balls explain skin but ask for none.
       if (!pixel || model_.balls[i].p_B.x() < 0) continue;
+      if (object != nullptr && object->At(*pixel) < depth) continue;  // hidden
       Eigen::Vector2d slope;
       const double d = OutsideDistance(fields_[v], pixel_[i], slope);
       double gain;
@@ -195,14 +210,16 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
       }
     }
     row += static_cast<int>(num_balls);
-    for (const Eigen::Vector2d& sample : fields_[v].samples) {
+    for (std::size_t k = 0; k < fields_[v].samples.size(); ++k) {
+      const Eigen::Vector2d& sample = fields_[v].samples[k];
       std::size_t nearest = 0;
       double least = 1e9;
       for (std::size_t i = 0; i < num_balls; ++i) {
         const double d = (pixel_[i] - sample).norm() - radius_[i];
         if (d < least) least = d, nearest = i;
       }
-      {
+      // Where an object cuts the picture of the hand, the hand may go on behind it.
+      if (least > 0 || !fields_[v].cut[k]) {
         double gain;
         r[row] = Saturate(least, options_.mask_reach_px, options_.skin_sigma_px, gain);
         if (J != nullptr) {

@@ -15,6 +15,7 @@ struct MaskField {
   const HandMask* mask = nullptr;
   cv::Mat outside;                       // CV_32F, px of the picture to the nearest mask entry
   std::vector<Eigen::Vector2d> samples;  // px, of the mask's outline
+  std::vector<bool> cut;  // of a sample: the outline may be the object's, not the hand's
 };
 
 // `wanted` samples of the outline not farther than `reach_px` from `middle`.

@@ -110,28 +110,27 @@ std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras&
 
 HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
                       const HandObservation& observation, const HandFit& last,
-                      const Eigen::Vector3d& velocity, bool fit_scale,
-                      const HandPoseOptions& options) {
+                      const HandStep& moved, bool fit_scale, const HandPoseOptions& options) {
   int tips = 0;
-  Eigen::Vector3d moved = Eigen::Vector3d::Zero();
-  for (int f = 0; f < kNumFingers; ++f) {
-    if (!observation.tip_W[f]) continue;
-    moved += *observation.tip_W[f] - FittedTip(model, last, f);
-    ++tips;
-  }
-  if (tips < 3) {
-    // Position only: carried by the tips that are left, else by the last motion.
+  for (const auto& tip : observation.tip_W) tips += tip.has_value();
+  Pose X_predicted = last.X_WH;
+  X_predicted.translation() += moved.position;
+  X_predicted.linear() = ExpRotation(moved.rotation).toRotationMatrix() * last.X_WH.linear();
+  if (tips == 0) {
     HandFit fit = last;
-    fit.X_WH.translation() += tips > 0 ? Eigen::Vector3d(moved / tips) : velocity;
+    fit.X_WH = X_predicted;
     JudgeTips(model, observation, fit);
     return fit;
   }
-  Pose X_predicted = last.X_WH;
-  X_predicted.translation() += velocity;
   HandFitProblem problem(model, cameras, observation, last, X_predicted, fit_scale, false, options);
   HandFit start = last;
   start.X_WH = X_predicted;
   HandFit fit = Solve(problem, model, start, options.iterations);
+  if (tips < 3) {
+    fit.frame = last.frame + 1;
+    JudgeTips(model, observation, fit);
+    return fit;
+  }
   // A hand that fled up the forearm or rolled over fits the tips nearly as well: every frame one
   // way out is tried, about the fingertips.
   static const std::array<Eigen::Vector3d, 6> kShifts = {
@@ -150,9 +149,10 @@ HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
       pivot + turn * (fit.X_WH.translation() - pivot) + fit.X_WH.linear() * kShifts[way];
   // Both are judged by this frame alone: the past led into the wrong one.
   HandPoseOptions free = options;
-  free.pose_sigma *= 10;
-  free.turn_sigma *= 10;
-  free.joint_sigma *= 10;
+  constexpr double kFree = 10;
+  free.pose_sigma *= kFree;
+  free.turn_sigma *= kFree;
+  free.joint_sigma *= kFree;
   HandFitProblem now(model, cameras, observation, last, X_predicted, fit_scale, false, free);
   other = Solve(now, model, other, 2 * options.iterations);
   constexpr double kClearlyBetter = 1.5;

@@ -12,6 +12,7 @@
 #include "base/pose.h"
 #include "vision/camera_model.h"
 #include "vision/hand_model.h"
+#include "vision/object_depth.h"
 #include "vision/skin_mask.h"
 
 namespace springgrasp {
@@ -21,8 +22,8 @@ struct HandPoseOptions {
   double ball_sigma_px = 5;   // of a ball outside the mask
   double skin_sigma_px = 5;   // of the mask's outline off that of the balls
   double mask_reach_px = 5;   // beyond, a mask residual says no more: objects hide the hand
-  double pose_sigma = 0.02;   // m per frame, about the predicted position
-  double turn_sigma = 0.12;   // rad per frame
+  double pose_sigma = 0.006;   // m per frame, about the predicted position
+  double turn_sigma = 0.06;   // rad per frame
   double joint_sigma = 0.15;  // rad per frame
   int mask_samples = 60;      // on the outline, per view
   int iterations = 8;         // Levenberg-Marquardt, per frame
@@ -34,6 +35,7 @@ struct HandObservation {
   PerFinger<std::optional<Eigen::Vector3d>> tip_W;  // m
   PerFinger<double> confidence = {};                // 0..1
   std::array<const HandMask*, 2> masks = {nullptr, nullptr};
+  std::array<const ObjectDepth*, 2> objects = {nullptr, nullptr};  // that may hide the hand
 };
 
 struct HandFit {
@@ -54,13 +56,16 @@ std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras&
                                     const HandObservation& observation,
                                     const HandPoseOptions& options = {});
 
-// The next frame, from the last one; `velocity` is the motion of H expected since. With
-// `fit_scale` the scale stays free (lead-in), tied to the last one. With fewer than three tips
-// only the position follows, orientation and joints are kept.
+// The next frame, from the last one; `moved` is the motion of H expected since: X_WH becomes about
+// moved.position further and turned by moved.rotation. With `fit_scale` the scale stays free
+// (lead-in), tied to the last one. What tips and masks leave open follows the expectation.
+struct HandStep {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m, in W
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  // rad, in W
+};
 HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
                       const HandObservation& observation, const HandFit& last,
-                      const Eigen::Vector3d& velocity, bool fit_scale,
-                      const HandPoseOptions& options = {});
+                      const HandStep& moved, bool fit_scale, const HandPoseOptions& options = {});
 
 // Fingertip and last bone's direction (towards the tip) of a fit, in W: hints for the tracker.
 Eigen::Vector3d FittedTip(const HandModel& model, const HandFit& fit, int finger);

@@ -14,8 +14,11 @@ namespace {
 class HandFollower {
  public:
   HandFollower(const KinematicTree& tree, const StereoCameras& cameras,
-               const HandPoseOptions& options)
-      : model_(MakeHandModel(tree)), cameras_(cameras), options_(options) {}
+               const HandPoseOptions& options, const std::optional<DemonstratedObject>& object)
+      : model_(MakeHandModel(tree)), cameras_(cameras), options_(options) {
+    if (!object) return;
+    for (int v = 0; v < 2; ++v) objects_[v] = SeeObject(cameras.view(v), *object);
+  }
 
   // Nothing as long as the hand was not found.
   const HandFit* Follow(const StereoFrame& frame, const TrackedFrame& tracked,
@@ -29,14 +32,18 @@ class HandFollower {
       if (Segment(v, v == 0 ? frame.left : frame.right, tracked, tracker)) {
         observation.masks[v] = &masks_[v];
       }
+      if (objects_[v]) observation.objects[v] = &*objects_[v];
     }
     if (!fit_) {
       fit_ = StartHandFit(model_, cameras_, observation, options_);
       return fit_ ? &*fit_ : nullptr;
     }
-    const Eigen::Vector3d before = fit_->X_WH.translation();
-    fit_ = UpdateHandFit(model_, cameras_, observation, *fit_, velocity_, fit_scale, options_);
-    velocity_ = 0.5 * velocity_ + 0.5 * (fit_->X_WH.translation() - before);
+    const Pose before = fit_->X_WH;
+    fit_ = UpdateHandFit(model_, cameras_, observation, *fit_, step_, fit_scale, options_);
+    step_.position = 0.5 * step_.position + 0.5 * (fit_->X_WH.translation() - before.translation());
+    step_.rotation = 0.5 * step_.rotation +
+                     0.5 * LogRotation(Eigen::Quaterniond(
+                               Eigen::Matrix3d(fit_->X_WH.linear() * before.linear().transpose())));
     return &*fit_;
   }
 
@@ -77,8 +84,9 @@ class HandFollower {
   StereoCameras cameras_;
   HandPoseOptions options_;
   std::array<HandMask, 2> masks_;
+  std::array<std::optional<ObjectDepth>, 2> objects_;
   std::optional<HandFit> fit_;
-  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
+  HandStep step_;
 };
 
 }  // namespace
@@ -89,7 +97,7 @@ Demonstration TrackStereo(const FrameSource& source, const StereoCameras& camera
                           TrackingSummary* summary) {
   FingertipTracker tracker(cameras, options.tracker);
   std::optional<HandFollower> follower;
-  if (hand != nullptr) follower.emplace(*hand, cameras, options.hand_pose);
+  if (hand != nullptr) follower.emplace(*hand, cameras, options.hand_pose, options.object);
 
   Demonstration demonstration;
   demonstration.frame = options.frame;

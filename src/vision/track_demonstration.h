@@ -23,6 +23,7 @@ using FrameSource = std::function<std::optional<StereoFrame>()>;
 struct TrackDemonstrationOptions {
   TrackerOptions tracker;
   HandPoseOptions hand_pose;
+  std::optional<DemonstratedObject> object;  // that may hide the hand
   double lead_in = 0;           // s from the first frame, dropped; times start anew after it
   double max_wait = 2;          // s until the caps must have been found
   double scale_time = 0.5;      // s during which the hand's length is estimated

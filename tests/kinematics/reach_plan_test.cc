@@ -42,6 +42,7 @@ ReachRequest MakeReach(const std::string& type, const std::string& shape,
     }
     return path;
   };
+  request.clear = [](const Pose&, const std::vector<Pose>&) { return true; };
   return request;
 }
 

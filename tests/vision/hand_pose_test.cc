@@ -123,7 +123,7 @@ TEST(HandPoseTest, AMovingHandIsFollowed) {
   const StereoCameras eyes = TestEyes();
   HandFit truth = OpenHand(model), fit = truth;
   Seen seen;
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  HandStep step;
   for (int k = 0; k < 12; ++k) {
     truth.X_WH.translation() += Eigen::Vector3d(-0.006, 0.002, -0.002);
     truth.X_WH.linear() =
@@ -131,31 +131,62 @@ TEST(HandPoseTest, AMovingHandIsFollowed) {
     truth.q = (truth.q.array() + 0.03).matrix().cwiseMin(model.tree.upper);
     See(model, truth, eyes, seen);
     const Eigen::Vector3d before = fit.X_WH.translation();
-    fit = UpdateHandFit(model, eyes, seen.observation, fit, velocity, false);
-    velocity = fit.X_WH.translation() - before;
+    fit = UpdateHandFit(model, eyes, seen.observation, fit, step, false);
+    step.position = fit.X_WH.translation() - before;
   }
   EXPECT_TRUE(fit.has_orientation);
   EXPECT_LT((fit.X_WH.translation() - truth.X_WH.translation()).norm(), 0.012);
   EXPECT_LT(TurnDeg(fit, truth), 10);
 }
 
-TEST(HandPoseTest, WithTwoTipsOnlyThePositionFollows) {
+TEST(HandPoseTest, AnObjectInFrontOfTheHandDoesNotPushItAway) {
+  const HandModel model = MakeHandModel(TestHand());
+  const StereoCameras eyes = TestEyes();
+  const HandFit truth = OpenHand(model);
+  // A post between the eyes and the palm.
+  DemonstratedObject post{ParseShape("cylinder:0.05x0.3"), Pose::Identity()};
+  post.X_WO.linear() = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  post.X_WO.translation() = truth.X_WH * Eigen::Vector3d(0.05, 0, -0.06);
+  Seen seen;
+  See(model, truth, eyes, seen);
+  std::array<ObjectDepth, 2> objects;
+  int hidden = 0;
+  for (int v = 0; v < 2; ++v) {
+    objects[v] = SeeObject(eyes.view(v), post);
+    cv::Mat& mask = seen.masks[v].mask;
+    for (int i = 0; i < mask.rows; ++i) {
+      for (int j = 0; j < mask.cols; ++j) {
+        if (!objects[v].Covers({2.0 * j, 2.0 * i})) continue;
+        hidden += mask.at<std::uint8_t>(i, j) > 0;
+        mask.at<std::uint8_t>(i, j) = 0;
+      }
+    }
+  }
+  ASSERT_GT(hidden, 500);
+  const auto follow = [&] {
+    HandFit fit = truth;
+    for (int k = 0; k < 20; ++k) {
+      fit = UpdateHandFit(model, eyes, seen.observation, fit, {}, false);
+    }
+    return (fit.X_WH.translation() - truth.X_WH.translation()).norm();
+  };
+  const double untold = follow();
+  for (int v = 0; v < 2; ++v) seen.observation.objects[v] = &objects[v];
+  const double told = follow();
+  EXPECT_LT(told, 0.012);
+  EXPECT_LT(told, untold);
+}
+
+TEST(HandPoseTest, WithTwoTipsThePictureGoesOn) {
   const HandModel model = MakeHandModel(TestHand());
   const StereoCameras eyes = TestEyes();
   const HandFit truth = OpenHand(model);
   Seen seen;
   See(model, truth, eyes, seen);
-  const Eigen::Vector3d step(0.01, 0, 0);
-  for (int f = 0; f < kNumFingers; ++f) {
-    if (f >= 2)
-      seen.observation.tip_W[f].reset();
-    else
-      *seen.observation.tip_W[f] += step;
-  }
-  const HandFit fit =
-      UpdateHandFit(model, eyes, seen.observation, truth, Eigen::Vector3d::Zero(), false);
+  for (int f = kMiddle; f < kNumFingers; ++f) seen.observation.tip_W[f].reset();
+  const HandFit fit = UpdateHandFit(model, eyes, seen.observation, truth, {}, false);
   EXPECT_FALSE(fit.has_orientation);
-  EXPECT_LT((fit.X_WH.translation() - truth.X_WH.translation() - step).norm(), 1e-9);
+  EXPECT_LT((fit.X_WH.translation() - truth.X_WH.translation()).norm(), 0.012);
   EXPECT_FALSE(StartHandFit(model, eyes, seen.observation));
 }
 

@@ -1,0 +1,30 @@
+// What a known object hides from a camera.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "base/pose.h"
+#include "base/shape.h"
+#include "demonstration/demonstration.h"
+#include "vision/camera_model.h"
+
+namespace springgrasp {
+
+// Length of the ray p + s d (d unit, both in O) up to the surface, m; nothing if it misses.
+std::optional<double> RayToShape(const Shape& shape, const Eigen::Vector3d& p_O,
+                                 const Eigen::Vector3d& d_O);
+
+// Depth along the optical axis of the object's surface: entry (i, j) stands for picture pixel
+// (j * step, i * step).
+struct ObjectDepth {
+  cv::Mat depth;  // CV_32FC1, m; 1e9 where the object is not
+  int step = 2;
+  bool Covers(const Eigen::Vector2d& pixel) const { return At(pixel) < 1e8; }
+  // Of the nearest entry; 1e9 outside the picture.
+  double At(const Eigen::Vector2d& pixel) const;
+};
+ObjectDepth SeeObject(const CameraModel& camera, const DemonstratedObject& object, int step = 2);
+
+}  // namespace springgrasp
