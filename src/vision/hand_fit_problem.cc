@@ -133,7 +133,7 @@ HandFitProblem::HandFitProblem(const HandModel& model, const StereoCameras& came
         cameras.view(v).X_WC.linear().col(2).dot(middle_W - cameras.view(v).X_WC.translation());
     fields_[v] = MakeField(*observation.masks[v], options.mask_samples, *middle,
                            cameras.view(v).fx * 0.2 / std::max(0.1, depth));
-    MarkCuts(observation.objects[v], fields_[v]);
+    MarkCuts(observation.object != nullptr ? &observation.object->depth[v] : nullptr, fields_[v]);
     num_residuals_ += static_cast<int>(model.balls.size() + fields_[v].samples.size());
   }
   num_residuals_ += 6 + 2 * n_ + static_cast<int>(model.coupled.size()) + 3;
@@ -187,7 +187,8 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
   for (int v = 0; v < 2; ++v) {
     if (fields_[v].mask == nullptr) continue;
     const CameraModel& camera = cameras_.view(v);
-    const ObjectDepth* object = observation_.objects[v];
+    const ObjectDepth* object =
+        observation_.object != nullptr ? &observation_.object->depth[v] : nullptr;
     pixel_.resize(num_balls);
     J_pixel_.resize(num_balls);
     radius_.resize(num_balls);
@@ -197,8 +198,7 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
       const double depth = camera.X_WC.linear().col(2).dot(p_W_[i] - camera.X_WC.translation());
       radius_[i] = camera.fx * model_.balls[i].radius * fit.scale / std::max(0.05, depth);
       const int at = row + static_cast<int>(i);
-      // The forearm may be sleeved: its balls explain skin but ask for none.
-      if (!pixel || model_.balls[i].p_B.x() < 0) continue;
+      if (!pixel || model_.balls[i].forearm) continue;
       if (object != nullptr && object->At(*pixel) < depth) continue;  // hidden
       Eigen::Vector2d slope;
       const double d = OutsideDistance(fields_[v], pixel_[i], slope);
@@ -218,8 +218,8 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
         const double d = (pixel_[i] - sample).norm() - radius_[i];
         if (d < least) least = d, nearest = i;
       }
-      // Where an object cuts the picture of the hand, the hand may go on behind it.
-      if (least > 0 || !fields_[v].cut[k]) {
+      // Where an object or a sleeve cuts the picture of the hand, the hand goes on behind it.
+      if (least > 0 || !(fields_[v].cut[k] || model_.balls[nearest].cut)) {
         double gain;
         r[row] = Saturate(least, options_.mask_reach_px, options_.skin_sigma_px, gain);
         if (J != nullptr) {

@@ -79,7 +79,7 @@ HandModel MakeHandModel(const KinematicTree& tree, const Eigen::VectorXd& rest) 
   model.balls.push_back({0, {0.004, 0.009, 0}, 0.0175});
   model.balls.push_back({0, {0.004, -0.009, 0}, 0.0175});
   // Forearm: explains skin beyond the wrist. x of H points to the middle knuckle.
-  for (int i = 1; i <= 5; ++i) model.balls.push_back({0, {-0.02 * i, 0, 0}, 0.027});
+  for (int i = 1; i <= 5; ++i) model.balls.push_back({0, {-0.02 * i, 0, 0}, 0.027, true});
 
   model.rest.resize(n);
   model.rest_sigma.resize(n);

@@ -14,6 +14,8 @@ struct HandBall {
   int node = 0;
   Eigen::Vector3d p_B = Eigen::Vector3d::Zero();  // m
   double radius = 0.008;                          // m
+  bool forearm = false;                           // may be sleeved: explains skin but asks for none
+  bool cut = false;  // the sleeve begins here: the outline of the skin need not be that of the ball
 };
 
 struct HandModel {

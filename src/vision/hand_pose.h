@@ -22,7 +22,7 @@ struct HandPoseOptions {
   double ball_sigma_px = 5;   // of a ball outside the mask
   double skin_sigma_px = 5;   // of the mask's outline off that of the balls
   double mask_reach_px = 5;   // beyond, a mask residual says no more: objects hide the hand
-  double pose_sigma = 0.006;   // m per frame, about the predicted position
+  double pose_sigma = 0.006;  // m per frame, about the predicted position
   double turn_sigma = 0.06;   // rad per frame
   double joint_sigma = 0.15;  // rad per frame
   int mask_samples = 60;      // on the outline, per view
@@ -35,7 +35,7 @@ struct HandObservation {
   PerFinger<std::optional<Eigen::Vector3d>> tip_W;  // m
   PerFinger<double> confidence = {};                // 0..1
   std::array<const HandMask*, 2> masks = {nullptr, nullptr};
-  std::array<const ObjectDepth*, 2> objects = {nullptr, nullptr};  // that may hide the hand
+  const KnownObject* object = nullptr;  // may hide the hand
 };
 
 struct HandFit {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <opencv2/core.hpp>
 #include <optional>
 
@@ -26,5 +27,11 @@ struct ObjectDepth {
   double At(const Eigen::Vector2d& pixel) const;
 };
 ObjectDepth SeeObject(const CameraModel& camera, const DemonstratedObject& object, int step = 2);
+
+// The object as both eyes see it.
+struct KnownObject {
+  DemonstratedObject object;
+  std::array<ObjectDepth, 2> depth;  // left, right
+};
 
 }  // namespace springgrasp

@@ -135,6 +135,13 @@ void SegmentHand(const cv::Mat& bgr, const SkinModel& skin, const MarkerColour& 
   }
 }
 
+bool OnSkin(const HandMask& hand, const Eigen::Vector2d& pixel) {
+  const Eigen::Vector2d at = hand.ToMask(pixel);
+  const int j = static_cast<int>(std::lround(at.x())), i = static_cast<int>(std::lround(at.y()));
+  if (i < 0 || j < 0 || i >= hand.mask.rows || j >= hand.mask.cols) return false;
+  return hand.mask.at<std::uint8_t>(i, j) > 0;
+}
+
 std::optional<Eigen::Vector2d> PalmCentre(const HandMask& hand,
                                           const std::vector<Eigen::Vector2d>& cap_px,
                                           double cap_radius_px, double reach_px) {

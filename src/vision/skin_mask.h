@@ -40,6 +40,9 @@ struct HandMask {
   Eigen::Vector2d ToPixel(const Eigen::Vector2d& entry) const;
 };
 
+// Whether a pixel is skin or cap.
+bool OnSkin(const HandMask& hand, const Eigen::Vector2d& pixel);
+
 // Skin and caps within `region`, only the parts connected to a cap. Reuses the memory of `hand`.
 void SegmentHand(const cv::Mat& bgr, const SkinModel& skin, const MarkerColour& caps,
                  const std::vector<Eigen::Vector2d>& cap_px, double cap_radius_px,

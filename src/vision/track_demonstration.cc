@@ -17,13 +17,15 @@ class HandFollower {
                const HandPoseOptions& options, const std::optional<DemonstratedObject>& object)
       : model_(MakeHandModel(tree)), cameras_(cameras), options_(options) {
     if (!object) return;
-    for (int v = 0; v < 2; ++v) objects_[v] = SeeObject(cameras.view(v), *object);
+    object_ =
+        KnownObject{*object, {SeeObject(cameras.left, *object), SeeObject(cameras.right, *object)}};
   }
 
   // Nothing as long as the hand was not found.
   const HandFit* Follow(const StereoFrame& frame, const TrackedFrame& tracked,
                         const FingertipTracker& tracker, bool fit_scale) {
     HandObservation observation;
+    if (object_) observation.object = &*object_;
     for (int f = 0; f < kNumFingers; ++f) {
       observation.tip_W[f] = tracked.fingers[f].p_W;
       observation.confidence[f] = tracked.fingers[f].confidence;
@@ -32,7 +34,6 @@ class HandFollower {
       if (Segment(v, v == 0 ? frame.left : frame.right, tracked, tracker)) {
         observation.masks[v] = &masks_[v];
       }
-      if (objects_[v]) observation.objects[v] = &*objects_[v];
     }
     if (!fit_) {
       fit_ = StartHandFit(model_, cameras_, observation, options_);
@@ -44,6 +45,11 @@ class HandFollower {
     step_.rotation = 0.5 * step_.rotation +
                      0.5 * LogRotation(Eigen::Quaterniond(
                                Eigen::Matrix3d(fit_->X_WH.linear() * before.linear().transpose())));
+    if (fit_scale) {
+      CountForearm();
+    } else if (forearm_frames_ > 0) {
+      KeepForearmSeen();
+    }
     return &*fit_;
   }
 
@@ -80,11 +86,48 @@ class HandFollower {
     return true;
   }
 
+  // Which balls of the forearm lie on skin, in both pictures.
+  void CountForearm() {
+    forearm_seen_.resize(model_.balls.size());
+    ++forearm_frames_;
+    for (std::size_t i = 0; i < model_.balls.size(); ++i) {
+      const HandBall& ball = model_.balls[i];
+      if (!ball.forearm) continue;
+      int views = 0;
+      for (int v = 0; v < 2; ++v) {
+        const auto pixel = Project(cameras_.view(v), fit_->X_WH * (fit_->scale * ball.p_B));
+        views += pixel && OnSkin(masks_[v], *pixel);
+      }
+      forearm_seen_[i] += views == 2;
+    }
+  }
+
+  // A sleeve stays where it is: what of the forearm was bare at first is part of the hand from now
+  // on, the rest explains no skin any more.
+  void KeepForearmSeen() {
+    std::vector<HandBall> kept;
+    bool bare = true;
+    for (std::size_t i = 0; i < model_.balls.size(); ++i) {
+      if (!model_.balls[i].forearm) {
+        kept.push_back(model_.balls[i]);
+      } else if (bare && 2 * forearm_seen_[i] > forearm_frames_) {
+        kept.push_back(model_.balls[i]);
+      } else if (bare) {
+        bare = false;
+        if (kept.back().forearm) kept.back().cut = true;
+      }
+    }
+    model_.balls = kept;
+    forearm_frames_ = 0;
+  }
+
   HandModel model_;
+  std::vector<int> forearm_seen_;
+  int forearm_frames_ = 0;
   StereoCameras cameras_;
   HandPoseOptions options_;
   std::array<HandMask, 2> masks_;
-  std::array<std::optional<ObjectDepth>, 2> objects_;
+  std::optional<KnownObject> object_;
   std::optional<HandFit> fit_;
   HandStep step_;
 };

@@ -149,14 +149,13 @@ TEST(HandPoseTest, AnObjectInFrontOfTheHandDoesNotPushItAway) {
   post.X_WO.translation() = truth.X_WH * Eigen::Vector3d(0.05, 0, -0.06);
   Seen seen;
   See(model, truth, eyes, seen);
-  std::array<ObjectDepth, 2> objects;
+  const KnownObject known{post, {SeeObject(eyes.left, post), SeeObject(eyes.right, post)}};
   int hidden = 0;
   for (int v = 0; v < 2; ++v) {
-    objects[v] = SeeObject(eyes.view(v), post);
     cv::Mat& mask = seen.masks[v].mask;
     for (int i = 0; i < mask.rows; ++i) {
       for (int j = 0; j < mask.cols; ++j) {
-        if (!objects[v].Covers({2.0 * j, 2.0 * i})) continue;
+        if (!known.depth[v].Covers({2.0 * j, 2.0 * i})) continue;
         hidden += mask.at<std::uint8_t>(i, j) > 0;
         mask.at<std::uint8_t>(i, j) = 0;
       }
@@ -171,7 +170,7 @@ TEST(HandPoseTest, AnObjectInFrontOfTheHandDoesNotPushItAway) {
     return (fit.X_WH.translation() - truth.X_WH.translation()).norm();
   };
   const double untold = follow();
-  for (int v = 0; v < 2; ++v) seen.observation.objects[v] = &objects[v];
+  seen.observation.object = &known;
   const double told = follow();
   EXPECT_LT(told, 0.012);
   EXPECT_LT(told, untold);
