@@ -17,6 +17,7 @@ namespace {
 using Points = std::vector<std::optional<Eigen::Vector3d>>;
 
 constexpr double kWristCutoff = 4;  // Hz: a solved wrist moves no faster than an arm
+constexpr double kDip = 0.52;       // rad, of a hand whose wrist was not recorded: 30 degrees
 
 // Fills what was not seen: straight lines over gaps, the nearest point before and after.
 std::vector<Eigen::Vector3d> Bridged(const std::vector<double>& t, const Points& points) {
@@ -150,10 +151,12 @@ Pose FitHandInMarkers(const HumanHand& human, const std::vector<std::vector<Eige
 }
 
 // Without a wrist: one direction of the hand for the whole movement, thumb to index as at its end,
-// pointing along the movement; then the pose of least strain at every instant, smoothed.
+// pointing where the movement goes over ground and dipped, as hands do that work on a table; then
+// the pose of least strain at every instant, smoothed.
 std::vector<Pose> SolveHandPath(const HumanHand& human, const std::vector<double>& t,
                                 const std::vector<std::vector<Eigen::Vector3d>>& p_WF,
-                                const PerFinger<bool>& known, const HandShape& pinch) {
+                                const PerFinger<bool>& known, const HandShape& pinch,
+                                const Eigen::Vector3d& up) {
   const std::size_t n = t.size();
   Eigen::Vector3d grip = Eigen::Vector3d::Zero();
   for (std::size_t i = n - std::max<std::size_t>(n / 10, 1); i < n; ++i) {
@@ -163,6 +166,8 @@ std::vector<Pose> SolveHandPath(const HumanHand& human, const std::vector<double
     return (p_WF[kThumb][i] + p_WF[kIndex][i]) / 2;
   };
   Eigen::Vector3d reach = middle(n - 1) - middle(0);
+  reach -= reach.dot(up) * up;
+  if (reach.norm() > 1e-3) reach = reach.normalized() - std::tan(kDip) * up;
   if (reach.cross(grip).norm() < 1e-3 * grip.norm()) reach += 0.1 * grip.unitOrthogonal();
   const Eigen::Vector3d grip_H = pinch.tips[kIndex] - pinch.tips[kThumb];
   const Eigen::Vector3d middle_H = (pinch.tips[kIndex] + pinch.tips[kThumb]) / 2;
@@ -269,7 +274,7 @@ HandMotion HandMotionOf(const DemonstratorHand& hand, const Demonstration& recor
       p_HF[i] = TipsIn(X_MH, tips, known, i);
     }
   } else {
-    X_WH = SolveHandPath(human, t, tips, known, ComputeHandShape(hand, pinch.q));
+    X_WH = SolveHandPath(human, t, tips, known, ComputeHandShape(hand, pinch.q), motion.up);
     motion.comments.push_back("assumed: hand pose solved from thumb and index, not recorded");
     for (std::size_t i = 0; i < n; ++i) p_HF[i] = TipsIn(X_WH[i], tips, known, i);
   }

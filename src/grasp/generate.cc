@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "grasp/generate_fingers.h"
 #include "grasp/learn_reach.h"
+#include "grasp/transfer.h"
 
 namespace springgrasp {
 namespace {
@@ -57,7 +58,8 @@ PerFinger<Contact> ContactsOn(const Grasp& grasp, const Shape& shape, double tip
   return contacts;
 }
 
-FingertipMotion GenerateMotion(const Grasp& grasp, const GenerateOptions& options) {
+FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& options) {
+  const Grasp grasp = EncloseAlongAxis(given, options.shape);
   const double T = options.duration.value_or(grasp.scales.T);
   ThrowUnless(T > 0 && std::isfinite(T), "duration is {} s, expected a positive number", T);
   ThrowUnless(options.dt > 0 && options.dt <= 0.1 * T,

@@ -28,7 +28,7 @@ struct GenerateOptions {
   double yaw = 0;
 };
 
-// Samples from 0 to 1.5 T. Fingers converge to the contacts at T and stay. Throws Error for a
+// Samples from 0 to 1.5 T. The grasp is fitted to the shape by EncloseAlongAxis first. Fingers converge to the contacts at T and stay. Throws Error for a
 // duration or step that is not positive.
 FingertipMotion GenerateMotion(const Grasp& grasp, const GenerateOptions& options);
 

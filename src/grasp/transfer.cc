@@ -1,0 +1,35 @@
+#include "grasp/transfer.h"
+
+#include "grasp/generate.h"
+
+namespace springgrasp {
+
+Grasp EncloseAlongAxis(const Grasp& grasp, const Shape& shape) {
+  if (grasp.object_given || grasp.type != "power" || shape.kind != Shape::Kind::kCylinder) {
+    return grasp;
+  }
+  const Pose X_OG = grasp.X_OH * grasp.X_HG;
+  const bool thumb_up = X_OG.linear().col(1).dot(grasp.X_OH.linear().col(1)) > 0;
+  const Eigen::Vector3d axis = (thumb_up ? 1 : -1) * X_OG.linear().col(1);
+  Pose X_NO = Pose::Identity();  // N: O turned about its origin, z along the axis
+  X_NO.linear() = FrameFromXZ(X_OG.linear().col(0), axis).transpose();
+
+  Grasp turned = grasp;
+  turned.X_OH = X_NO * grasp.X_OH;
+  turned.shape = {Shape::Kind::kCylinder,
+                  {grasp.shape.size.x(), grasp.shape.size.x(), shape.size.z()}};
+  const PerFinger<Contact> contacts = ContactsOn(grasp, grasp.shape, grasp.tip_radius);
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (!grasp.involved[i]) continue;
+    const Eigen::Vector3d p_N = X_NO * contacts[i].p_OC;
+    turned.rays[i].height = p_N.z() / shape.size.z();
+    turned.rays[i].direction = Eigen::Vector3d(p_N.x(), p_N.y(), 0).normalized();
+  }
+  turned.reach = WithEndpoints(grasp.reach, X_NO * StartPose(grasp.reach),
+                               X_NO * GoalPose(grasp.reach));
+  turned.reach.motion.weights.leftCols<3>() =
+      (grasp.reach.motion.weights.leftCols<3>() * X_NO.linear().transpose()).eval();
+  return turned;
+}
+
+}  // namespace springgrasp

@@ -1,0 +1,16 @@
+// What a grasp that was learned without its object leaves open when it meets a real one.
+#pragma once
+
+#include "base/shape.h"
+#include "grasp/grasp.h"
+
+namespace springgrasp {
+
+// An object inferred from the grasp has a size but no axis: its O stands upright only because `up`
+// does. Where a whole hand (power) that enclosed such an object meets a cylinder, the cylinder's
+// axis takes the place of the axis that the hand enclosed: O's z becomes G's y (across the
+// fingers), the thumb's side up; contacts keep their distances along it. Other grasps are returned
+// as they are.
+Grasp EncloseAlongAxis(const Grasp& grasp, const Shape& shape);
+
+}  // namespace springgrasp
