@@ -40,7 +40,8 @@ struct Observation {
   HandMotion shown;       // as performed: placed, with lead-in (t < 0), at the eyes' rate
   Demonstration truth;    // fingertips and hand of what was shown, from t = 0
   Demonstration tracked;  // what the pictures told; same instants as `truth`
-  // Per instant of `truth` the smaller of both eyes' visible fractions; empty if not measured.
+  // Per instant of `truth` the smaller of both eyes' visible fractions, 0 for a fingertip that the
+  // recording did not see; empty if not measured.
   std::vector<PerFinger<double>> visible;
   ObservationErrors errors;
   TrackingSummary summary;  // the tracker's own account

@@ -7,6 +7,7 @@ namespace springgrasp {
 namespace {
 
 constexpr double kSpeedFraction = 0.05;  // movement time: first to last 5 % of peak speed
+constexpr double kMovement = 0.2;        // s, no reach is shorter
 constexpr double kRest = 0.05;           // s, a hand that is slow for so long has stopped
 
 struct Stop {
@@ -27,6 +28,29 @@ Stop FindStop(const std::vector<double>& speed, int peak, double dt, double slow
   return {static_cast<int>(slowest - speed.begin()), false};
 }
 
+// The fastest instant up to `last` of the movement that is fastest over kMovement: a jump of one
+// frame is not a movement.
+int FindPeak(const std::vector<double>& speed, int last, double dt) {
+  const int half = static_cast<int>(std::lround(0.5 * kMovement / dt));
+  const auto window = [&](int i) {
+    return std::pair(std::max(0, i - half), std::min(last, i + half));
+  };
+  int fastest = 0;
+  double largest = -1;
+  for (int i = 0; i <= last; ++i) {
+    const auto [from, to] = window(i);
+    double sum = 0;
+    for (int k = from; k <= to; ++k) sum += speed[static_cast<std::size_t>(k)];
+    // Windows cut by an end are as long as the others: what is not there stood still.
+    if (sum <= largest) continue;
+    largest = sum;
+    fastest = i;
+  }
+  const auto [from, to] = window(fastest);
+  return static_cast<int>(std::max_element(speed.begin() + from, speed.begin() + to + 1) -
+                          speed.begin());
+}
+
 }  // namespace
 
 ReachSegment FindReach(const std::vector<double>& speed, const std::vector<double>& span, double dt,
@@ -39,7 +63,7 @@ ReachSegment FindReach(const std::vector<double>& speed, const std::vector<doubl
   ReachSegment reach;
 
   // The fingers close after their widest opening before the hand stops; letting go comes later.
-  reach.peak = static_cast<int>(std::max_element(speed.begin(), speed.end()) - speed.begin());
+  reach.peak = FindPeak(speed, n - 1, dt);
   Stop stop = FindStop(speed, reach.peak, dt, threshold(reach.peak));
   const auto widest = std::max_element(span.begin(), span.begin() + stop.index + 1);
   const double closed = *std::min_element(widest, span.end());
@@ -48,8 +72,7 @@ ReachSegment FindReach(const std::vector<double>& speed, const std::vector<doubl
   while (settled < n - 1 && at(span, settled) > closed + tolerance) ++settled;
 
   // A faster movement after that (lifting) is not the reach.
-  const auto peak = std::max_element(speed.begin(), speed.begin() + settled + 1);
-  reach.peak = static_cast<int>(peak - speed.begin());
+  reach.peak = FindPeak(speed, settled, dt);
   const double slow = threshold(reach.peak);
   stop = FindStop(speed, reach.peak, dt, slow);
   reach.begin = reach.peak;
