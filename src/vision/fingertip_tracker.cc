@@ -182,6 +182,7 @@ TrackedFrame FingertipTracker::Impl::Update(const cv::Mat& left, const cv::Mat& 
     TrackView(v, *pictures[v], engine);
   }
   Search();
+  RestoreOrder();
   const TrackedFrame frame = Measure(pictures);
 
   // The hand's common motion carries what is not seen.

@@ -57,6 +57,7 @@ struct FingertipTracker::Impl {
   PerFinger<tracker_internal::FingerState> fingers;
   Eigen::Vector3d p_WPalm = Eigen::Vector3d::Zero();
   std::array<int, 2> turn = {0, 0};
+  int disordered_frames = 0;  // for how long both views have seen the fingers out of order
 
   Impl(const StereoCameras& c, const TrackerOptions& o)
       : cameras(c), options(o), colour(MakeMarkerColour(o.colour)), cap(o.cap) {
@@ -101,6 +102,8 @@ struct FingertipTracker::Impl {
   PerFinger<bool> FindDoubtful() const;
   void Reseed(const PerFinger<bool>& doubtful);
   void DropCollisions();
+  std::optional<PerFinger<int>> PolarOrder(int v) const;
+  void RestoreOrder();
   void Label(const PerFinger<Eigen::Vector3d>& p_WCaps, const PerFinger<int>& order);
   TrackedFrame Measure(const std::array<const cv::Mat*, 2>& pictures);
   Eigen::Vector2d PalmPixel(int v) const;

@@ -24,8 +24,8 @@ struct TrackDemonstrationOptions {
   TrackerOptions tracker;
   HandPoseOptions hand_pose;
   std::optional<DemonstratedObject> object;  // that may hide the hand
-  double lead_in = 0;           // s from the first frame, dropped; times start anew after it
-  double max_wait = 2;          // s until the caps must have been found
+  double lead_in = 0;   // s from the first frame, dropped; times start anew after it
+  double max_wait = 2;  // s until the caps must have been found
   // s during which the hand's length is estimated: it settles before a lead-in of 0.5 s is over.
   double scale_time = 0.35;
   double smoothing = 0.1;       // s, half window of the hand's track; 0: none
