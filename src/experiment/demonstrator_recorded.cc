@@ -17,7 +17,7 @@ namespace {
 using Points = std::vector<std::optional<Eigen::Vector3d>>;
 
 constexpr double kWristCutoff = 4;  // Hz: a solved wrist moves no faster than an arm
-constexpr double kDip = 0.52;       // rad, of a hand whose wrist was not recorded: 30 degrees
+constexpr double kDip = M_PI / 6;   // rad, of a hand whose wrist was not recorded (assumed)
 
 // Fills what was not seen: straight lines over gaps, the nearest point before and after.
 std::vector<Eigen::Vector3d> Bridged(const std::vector<double>& t, const Points& points) {

@@ -117,8 +117,9 @@ Observation ObserveMotion(ObserveStage& stage, const HandMotion& motion, RandomE
     if (shown.t >= 0 && options.measure_visible) {
       const PerFinger<double> left = stage.VisibleCaps(0), right = stage.VisibleCaps(1);
       PerFinger<double> both;
-      for (int f = 0; f < kNumFingers; ++f)
+      for (int f = 0; f < kNumFingers; ++f) {
         both[f] = shown.recorded[f] ? std::min(left[f], right[f]) : 0;
+      }
       result.visible.push_back(both);
     }
     if (!options.frames_folder.empty()) {

@@ -19,17 +19,17 @@ struct GenerateOptions {
   std::optional<Pose> X_WG_start;
   std::optional<double> duration;  // T, s; absent: as demonstrated
   double dt = 0.005;               // s, step of samples and integrator
-  // The shape of a reach from another start. false: the learned path about the object plus an offset
-  // that fades (the plain DMP). true: the learned path turned and scaled with the vector from start
-  // to goal: the forcing term of Eq. 12 with its position weights turned and scaled alike. For
-  // robots whose start lies elsewhere than the demonstrator's.
+  // The shape of a reach from another start. false: the learned path about the object plus an
+  // offset that fades (the plain DMP). true: the learned path turned and scaled with the vector
+  // from start to goal: the forcing term of Eq. 12 with its position weights turned and scaled
+  // alike. For robots whose start lies elsewhere than the demonstrator's.
   bool similar_reach = false;
   // Further rotation of the whole reach about the object's z, rad (what symmetry leaves free).
   double yaw = 0;
 };
 
-// Samples from 0 to 1.5 T. The grasp is fitted to the shape by EncloseAlongAxis first. Fingers converge to the contacts at T and stay. Throws Error for a
-// duration or step that is not positive.
+// Samples from 0 to 1.5 T, of the grasp as EncloseAlongAxis fits it to the shape. Fingers converge
+// to the contacts at T and stay. Throws Error for a duration or step that is not positive.
 FingertipMotion GenerateMotion(const Grasp& grasp, const GenerateOptions& options);
 
 // Contacts of the involved fingers on a shape: the learned rays, or where one meets no surface a

@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kRest = 0.5;  // of T, of the hand at its goal
+constexpr double kRest = 0.5;  // of T, at the goal: reaches are rolled out to 1.5 T
 
 // Velocity and acceleration at the ends decide how a cut movement is completed, and are what a
 // recording knows worst. They become those of a straight line through the velocities of the first

@@ -7,7 +7,7 @@ namespace springgrasp {
 namespace {
 
 constexpr double kSpeedFraction = 0.05;  // movement time: first to last 5 % of peak speed
-constexpr double kMovement = 0.2;        // s, no reach is shorter
+constexpr double kMovement = 0.2;        // s; human reaches to grasp last 1.0 to 1.4 s
 constexpr double kRest = 0.05;           // s, a hand that is slow for so long has stopped
 
 struct Stop {

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "base/shape_ray.h"
 
 namespace springgrasp {
 namespace {
@@ -37,31 +38,6 @@ Vector3d BoxExcess(const Shape& shape, const Vector3d& p) {
 
 Vector2d CylinderExcess(const Shape& shape, const Vector3d& p) {
   return {p.head<2>().norm() - 0.5 * shape.size.x(), std::abs(p.z()) - 0.5 * shape.size.z()};
-}
-
-// Narrows [s0, s1] to where |origin + s * direction| <= half on one axis; false if nothing is left.
-bool ClipSlab(double origin, double direction, double half, double& s0, double& s1) {
-  if (std::abs(direction) < kTiny) return std::abs(origin) <= half;
-  const double a = (-half - origin) / direction;
-  const double b = (half - origin) / direction;
-  s0 = std::max(s0, std::min(a, b));
-  s1 = std::min(s1, std::max(a, b));
-  return s0 <= s1;
-}
-
-// The same for |o + s d| <= radius in two or three dimensions.
-template <typename V>
-bool ClipBall(const V& o, const V& d, double radius, double& s0, double& s1) {
-  const double a = d.squaredNorm();
-  const double c = o.squaredNorm() - radius * radius;
-  if (a < kTiny * kTiny) return c <= 0;
-  const double b = o.dot(d);
-  const double discriminant = b * b - a * c;
-  if (discriminant < 0) return false;
-  const double root = std::sqrt(discriminant);
-  s0 = std::max(s0, (-b - root) / a);
-  s1 = std::min(s1, (-b + root) / a);
-  return s0 <= s1;
 }
 
 }  // namespace
@@ -103,26 +79,9 @@ std::optional<Vector3d> RayExit(const Shape& shape, const Vector3d& origin,
                                 const Vector3d& direction) {
   if (direction.norm() < kTiny) return std::nullopt;
   const Vector3d d = direction.normalized();
-  const Vector3d half = 0.5 * shape.size;
-  double s0 = 0;
-  double s1 = std::numeric_limits<double>::infinity();
-  bool hit = false;
-  switch (shape.kind) {
-    case Shape::Kind::kSphere:
-      hit = ClipBall(origin, d, half.x(), s0, s1);
-      break;
-    case Shape::Kind::kCylinder:
-      hit = ClipBall(Vector2d(origin.head<2>()), Vector2d(d.head<2>()), half.x(), s0, s1) &&
-            ClipSlab(origin.z(), d.z(), half.z(), s0, s1);
-      break;
-    case Shape::Kind::kBox:
-      hit = ClipSlab(origin.x(), d.x(), half.x(), s0, s1) &&
-            ClipSlab(origin.y(), d.y(), half.y(), s0, s1) &&
-            ClipSlab(origin.z(), d.z(), half.z(), s0, s1);
-      break;
-  }
-  if (!hit || !std::isfinite(s1)) return std::nullopt;
-  return Vector3d(origin + s1 * d);
+  const auto span = RayThrough(shape, origin, d);
+  if (!span) return std::nullopt;
+  return Vector3d(origin + span->leave * d);
 }
 
 ContactRay RayOfContact(const Shape& shape, const Vector3d& p_OF) {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "kinematics/reach_plan.h"
+#include "motion/minimum_jerk.h"
 
 namespace springgrasp {
 namespace {
@@ -12,11 +13,6 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kSquare = 0.002;             // m, sides as equal as this are equal
 constexpr double kRoll = 20 * kPi / 180;      // rad, about G's z (spheres)
 constexpr double kTiltStep = 10 * kPi / 180;  // rad
-
-double SmoothStep(double s) {
-  s = std::clamp(s, 0.0, 1.0);
-  return s * s * s * (10 + s * (6 * s - 15));
-}
 
 // Turns 0, +step, -step, +2 step, ... up to `most` (inclusive).
 std::vector<double> Around(double step, double most) {
@@ -97,7 +93,7 @@ double RaisePath(const RobotHand& hand, const std::vector<Eigen::VectorXd>& q_ha
   last = std::clamp(last, 1, std::max(1, n - 1));
   const auto bump = [&](int k) {
     const double s = static_cast<double>(k) / last;
-    return s >= 1 ? 0 : SmoothStep(s / 0.4) * SmoothStep((1 - s) / 0.5);
+    return s >= 1 ? 0 : MinimumJerkPosition(s / 0.4) * MinimumJerkPosition((1 - s) / 0.5);
   };
   double raise = 0;
   for (int k = 0; k < std::min(n, last); ++k) {

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "kinematics/shape_distance.h"
+#include "motion/minimum_jerk.h"
 
 namespace springgrasp {
 namespace {
@@ -15,11 +16,6 @@ constexpr int kOpenings = 10;        // tried degrees of opening
 constexpr double kSmoothing = 0.02;  // s, half width of the final moving average
 constexpr double kHold = 0.05;       // s, an opening is kept this long after its need
 constexpr double kAhead = 0.2;       // of T, an opening is finished this much before
-
-double SmoothStep(double s) {
-  s = std::clamp(s, 0.0, 1.0);
-  return s * s * s * (10 + s * (6 * s - 15));
-}
 
 double Clearance(const RobotHand& robot, const Shape& shape, const Pose& X_OH,
                  const Eigen::VectorXd& q, std::vector<Pose>& X_HB) {
@@ -81,7 +77,8 @@ std::vector<double> Openings(const RobotHand& robot, const HandMotionRequest& re
   }
   Smooth(held, half);
   for (int k = 0; k < n; ++k) {
-    held[k] *= SmoothStep((t_contact - request.dt * k) / (0.5 * options.closing * request.T));
+    held[k] *=
+        MinimumJerkPosition((t_contact - request.dt * k) / (0.5 * options.closing * request.T));
   }
   return held;
 }
@@ -138,7 +135,7 @@ HandMotionResult MapHandMotion(const HumanHand& human, const RobotHand& robot,
   double error = 0, count = 0;
   Eigen::VectorXd previous;
   for (int k = 0; k < n; ++k) {
-    const double blend = SmoothStep((request.dt * k - t_close) / (t_contact - t_close));
+    const double blend = MinimumJerkPosition((request.dt * k - t_close) / (t_contact - t_close));
     MappingTarget target = TargetFromHuman(human, request.q_human[k], robot);
     for (int f = 0; f < kNumFingers; ++f) {
       if (!request.involved[f]) continue;
@@ -205,7 +202,7 @@ std::vector<Pose> ClearApproach(const RobotHand& robot, const Shape& shape,
   const double peak = std::max(0.3, 1 - 1.5 * closing);
   const auto bump = [&](int k) {
     const double s = dt * k / T;
-    return s < peak ? SmoothStep(s / peak) : SmoothStep((1 - s) / (1 - peak));
+    return s < peak ? MinimumJerkPosition(s / peak) : MinimumJerkPosition((1 - s) / (1 - peak));
   };
   std::vector<Pose> X_HB;
   // What the open hand has at the goal is all that can be asked near it.

@@ -9,19 +9,19 @@
 namespace springgrasp {
 namespace {
 
-constexpr double kBigStep = 0.15;      // rad between samples: a jump
-constexpr double kLimitMargin = 0.02;  // rad, kept from the joints' limits
+constexpr double kBigStep = 0.15;  // rad between samples: a jump
 
 bool SamePose(const Pose& a, const Pose& b) {
   return (a.translation() - b.translation()).norm() < 1e-3 && a.linear().isApprox(b.linear(), 5e-3);
 }
 
-double LargestStep(const std::vector<Eigen::VectorXd>& q) {
+// Of any joint, rad/s.
+double LargestSpeed(const std::vector<Eigen::VectorXd>& q, double dt) {
   double largest = 0;
   for (std::size_t k = 1; k < q.size(); ++k) {
     largest = std::max(largest, (q[k] - q[k - 1]).cwiseAbs().maxCoeff());
   }
-  return largest;
+  return largest / dt;
 }
 
 // The way as tracked in `q`, its beginning turned within the arm's null space to q_start.
@@ -34,8 +34,8 @@ ArmPath TurnedToStart(const Arm& arm, const std::vector<Pose>& X_WH,
   ik.limit_weight = 0;
   const std::size_t n = q_tracked.size();
   for (std::size_t k = 0; k < n; ++k) {
-    const double rest = 1 - MinimumJerkPosition(std::min(
-                                1.0, static_cast<double>(k) / (0.8 * static_cast<double>(n))));
+    const double rest =
+        1 - MinimumJerkPosition(static_cast<double>(k) / (0.8 * static_cast<double>(n)));
     std::optional<Eigen::VectorXd> q = q_tracked[k];
     if (rest > 0) q = SolveArmIk(arm, X_WH[k], q_tracked[k] + rest * difference, ik);
     if (!q) {
@@ -53,10 +53,11 @@ ArmPath TurnedToStart(const Arm& arm, const std::vector<Pose>& X_WH,
 }
 
 bool WithinLimits(const Arm& arm, const std::vector<Eigen::VectorXd>& path) {
+  const double margin = ArmIkOptions().margin;
   for (const Eigen::VectorXd& q : path) {
     for (int i = 0; i < arm.num_joints(); ++i) {
       const int j = arm.joints[i];
-      if (q[i] < arm.tree.lower[j] + kLimitMargin || q[i] > arm.tree.upper[j] - kLimitMargin) {
+      if (q[i] < arm.tree.lower[j] + margin || q[i] > arm.tree.upper[j] - margin) {
         return false;
       }
     }
@@ -78,7 +79,7 @@ std::optional<ReachPath> Join(const Arm& arm, const ReachPathRequest& request,
   for (int k = 0; k < join; ++k) path.q.push_back(EvaluateMinimumJerk(quintic, k).x);
   if (!WithinLimits(arm, path.q)) return std::nullopt;
   path.q.insert(path.q.end(), q_tail.begin() + (join - first), q_tail.end());
-  if (LargestStep(path.q) > request.max_step) return std::nullopt;
+  if (LargestSpeed(path.q, request.dt) > request.max_speed) return std::nullopt;
   path.X_WH = request.X_WH;
   for (int k = 0; k < join; ++k) path.X_WH[k] = HandPose(arm, path.q[k]);
   if (request.clear && !request.clear(path.X_WH, path.q, join)) return std::nullopt;
@@ -104,16 +105,16 @@ ReachPath FollowReach(const Arm& arm, const ReachPathRequest& request) {
     const ArmPath whole =
         begins_there ? TurnedToStart(arm, request.X_WH, tracked.q, *request.q_start) : tracked;
     path.reason = whole.reason;
-    const double step = LargestStep(whole.q);
-    if (whole.complete && step <= request.max_step) {
+    const double speed = LargestSpeed(whole.q, request.dt);
+    if (whole.complete && speed <= request.max_speed) {
       path.q = whole.q;
       path.X_WH = request.X_WH;
       path.complete = true;
       return path;
     }
     if (whole.complete) {
-      path.reason = fmt::format("the reach asks for steps of {:.3f} rad of a joint, allowed are {}",
-                                step, request.max_step);
+      path.reason = fmt::format("the reach asks for {:.1f} rad/s of a joint, allowed are {:.1f}",
+                                speed, request.max_speed);
     }
   }
   if (!request.q_start) return path;

@@ -17,8 +17,9 @@ struct ReachPathRequest {
   Eigen::VectorXd q_goal;  // arm joints at its last pose, rad
   // Where the arm stands; absent: the joint path begins in any posture that solves the first pose.
   std::optional<Eigen::VectorXd> q_start;
-  double max_step = 0.02;  // rad between samples, of any joint
-  int latest_join = 0;     // sample; 0: the whole way has to be followed
+  double dt = 0.005;     // s, between samples
+  double max_speed = 4;  // rad/s, of any joint
+  int latest_join = 0;   // sample; 0: the whole way has to be followed
   // Whether hand poses and joints up to a sample are free of obstacles; for ways of our own making.
   std::function<bool(const std::vector<Pose>& X_WH, const std::vector<Eigen::VectorXd>& q, int end)>
       clear;

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "kinematics/reach_path.h"
+#include "motion/minimum_jerk.h"
 
 namespace springgrasp {
 namespace {
@@ -16,11 +17,6 @@ constexpr double kWristRadius = 0.03;      // m
 constexpr double kEnoughMargin = 0.25;     // of half a joint's range; more is no better
 constexpr double kLeastClearance = 0.002;  // m, a goal nearer to the table is not taken
 constexpr double kBigStep = 0.15;          // rad between samples: a jump
-
-double SmoothStep(double s) {
-  s = std::clamp(s, 0.0, 1.0);
-  return s * s * s * (10 + s * (6 * s - 15));
-}
 
 // Forearm and wrist above the table: from the joint four before the hand to the hand frame.
 double ForearmAboveTable(const Arm& arm, const Eigen::VectorXd& q, const ReachRequest& request) {
@@ -124,7 +120,8 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
   follow.X_WH = plan.X_WH;
   follow.q_goal = *q_end;
   follow.q_start = request.q_start;
-  follow.max_step = options.max_joint_speed * request.dt;
+  follow.dt = request.dt;
+  follow.max_speed = options.max_joint_speed;
   follow.latest_join = static_cast<int>(options.latest_join * request.T / request.dt);
   follow.clear = [&](const std::vector<Pose>& X_WH, const std::vector<Eigen::VectorXd>& q,
                      int end) {
@@ -150,7 +147,7 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
   std::vector<Pose> X_lift;
   const int lift_steps = static_cast<int>(std::lround(options.lift_duration / request.dt));
   for (int k = 0; k <= lift_steps; ++k) {
-    const double z = options.lift * SmoothStep(static_cast<double>(k) / lift_steps);
+    const double z = options.lift * MinimumJerkPosition(static_cast<double>(k) / lift_steps);
     X_lift.push_back(Moved(plan.X_WH.back(), Eigen::Vector3d(0, 0, z)));
   }
   const ArmPath lift = TrackArmPath(arm, X_lift, path.q.back(), kBigStep);
@@ -166,7 +163,7 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
       // Fades in and out within a quarter period, so that it starts and ends at rest.
       const double fade = 4 * options.shake_frequency;
       const double envelope =
-          SmoothStep(fade * t) * SmoothStep(fade * (options.shake_duration - t));
+          MinimumJerkPosition(fade * t) * MinimumJerkPosition(fade * (options.shake_duration - t));
       const double s =
           options.shake * envelope * std::sin(2 * std::numbers::pi * options.shake_frequency * t);
       X_shake.push_back(Moved(X_lift.back(), s * Eigen::Vector3d::Unit(axis)));

@@ -218,41 +218,26 @@ void FingertipTracker::Impl::Search() {
   }
 }
 
-// The fingers in their order about the palm, the thumb left out: entry f is whose region should be
-// f's. Nothing unless all four are seen.
-std::optional<PerFinger<int>> FingertipTracker::Impl::PolarOrder(int v) const {
-  const View& view = views[v];
-  PerFinger<int> order = {0, 1, 2, 3, 4};
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
-  for (int f = kIndex; f < kNumFingers; ++f) {
-    if (!view.active[f]) return std::nullopt;
-    middle += view.region[f] / 4;
-  }
-  const Eigen::Vector2d palm = PalmPixel(v), ahead = middle - palm;
-  const auto angle = [&](int f) {
-    const Eigen::Vector2d out = view.region[f] - palm;
-    return turn[v] * std::atan2(ahead.x() * out.y() - ahead.y() * out.x(), ahead.dot(out));
-  };
-  std::stable_sort(order.begin() + kIndex, order.end(),
-                   [&](int a, int b) { return angle(a) < angle(b); });
-  return order;
-}
-
 // Fingers pass each other, but they do not stay crossed: where both views have long seen the same
 // wrong order about the palm, the labels were exchanged while caps were not seen.
 void FingertipTracker::Impl::RestoreOrder() {
-  constexpr int kLong = 6;  // frames
+  constexpr int kLong = 6;  // frames, 0.2 s at 30 Hz
   const PerFinger<bool> four = {false, true, true, true, true};
-  const auto left = PolarOrder(0), right = PolarOrder(1);
-  const bool crossed = left && left == right &&
-                       !InFingerOrder(views[0].region, four, PalmPixel(0), turn[0]) &&
-                       !InFingerOrder(views[1].region, four, PalmPixel(1), turn[1]);
+  std::array<PerFinger<int>, 2> order;
+  bool crossed = true;
+  for (int v = 0; v < 2; ++v) {
+    const View& view = views[v];
+    crossed = crossed && std::count(view.active.begin() + kIndex, view.active.end(), true) == 4 &&
+              !InFingerOrder(view.region, four, PalmPixel(v), turn[v]);
+    order[v] = OrderAboutPalm(view.region, PalmPixel(v), turn[v]);
+  }
+  crossed = crossed && order[0] == order[1];
   disordered_frames = crossed ? disordered_frames + 1 : 0;
   if (disordered_frames < kLong) return;
   disordered_frames = 0;
   const auto permute = [&](auto& values) {
     const auto before = values;
-    for (int f = kIndex; f < kNumFingers; ++f) values[f] = before[(*left)[f]];
+    for (int f = kIndex; f < kNumFingers; ++f) values[f] = before[order[0][f]];
   };
   permute(fingers);
   for (View& view : views) {

@@ -102,7 +102,6 @@ struct FingertipTracker::Impl {
   PerFinger<bool> FindDoubtful() const;
   void Reseed(const PerFinger<bool>& doubtful);
   void DropCollisions();
-  std::optional<PerFinger<int>> PolarOrder(int v) const;
   void RestoreOrder();
   void Label(const PerFinger<Eigen::Vector3d>& p_WCaps, const PerFinger<int>& order);
   TrackedFrame Measure(const std::array<const cv::Mat*, 2>& pictures);

@@ -102,4 +102,22 @@ HandModel MakeHandModel(const KinematicTree& tree, const Eigen::VectorXd& rest) 
   return model;
 }
 
+void KeepBareForearm(const std::vector<bool>& bare, HandModel& model) {
+  std::vector<HandBall> kept;
+  bool sleeve = false;
+  for (std::size_t i = 0; i < model.balls.size(); ++i) {
+    const HandBall& ball = model.balls[i];
+    if (!ball.forearm) {
+      kept.push_back(ball);
+      continue;
+    }
+    if (!sleeve && !bare.at(i)) {
+      sleeve = true;
+      if (!kept.empty() && kept.back().forearm) kept.back().cut = true;
+    }
+    if (!sleeve) kept.push_back(ball);
+  }
+  model.balls = kept;
+}
+
 }  // namespace springgrasp

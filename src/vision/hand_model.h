@@ -33,4 +33,8 @@ struct HandModel {
 // Throws Error if a tip is missing.
 HandModel MakeHandModel(const KinematicTree& tree, const Eigen::VectorXd& rest = {});
 
+// A sleeve stays where it is: of the forearm only the balls from the wrist to the first that was
+// not `bare` (one entry per ball) are kept, the last of them as cut by the sleeve.
+void KeepBareForearm(const std::vector<bool>& bare, HandModel& model);
+
 }  // namespace springgrasp

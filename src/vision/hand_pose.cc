@@ -32,6 +32,44 @@ Pose ScaledFrame(const HandModel& model, const HandFit& fit, int frame) {
   return X_HB[tree.frames[frame].node] * X_BF;
 }
 
+// A hand that fled up the forearm or rolled over fits the tips nearly as well: every frame one way
+// out is tried, about the fingertips. The better of both, judged by this frame alone, since the
+// past led into the wrong one.
+HandFit TryWayOut(const HandModel& model, const StereoCameras& cameras,
+                  const HandObservation& observation, const HandFit& last, const Pose& X_predicted,
+                  bool fit_scale, const HandPoseOptions& options, const HandFit& fit) {
+  struct Way {
+    Eigen::Vector3d shift, turn;  // m and rad, in H
+  };
+  static const std::array<Way, 6> kWays = {{{{0.025, 0, 0}, {0, 0, 0}},
+                                            {{0, 0, 0}, {0.3, 0, 0}},
+                                            {{0, 0, 0}, {0, 0.3, 0}},
+                                            {{-0.02, 0, 0}, {0, 0, 0}},
+                                            {{0, 0, 0}, {-0.3, 0, 0}},
+                                            {{0, 0, 0}, {0, -0.3, 0}}}};
+  const Way& way = kWays[static_cast<std::size_t>(last.frame) % kWays.size()];
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
+  int tips = 0;
+  for (const auto& tip : observation.tip_W) {
+    if (tip) pivot += *tip, ++tips;
+  }
+  pivot /= tips;
+  HandFit other = fit;
+  const Eigen::Matrix3d turn = ExpRotation(fit.X_WH.linear() * way.turn).toRotationMatrix();
+  other.X_WH.linear() = turn * fit.X_WH.linear();
+  other.X_WH.translation() =
+      pivot + turn * (fit.X_WH.translation() - pivot) + fit.X_WH.linear() * way.shift;
+  HandPoseOptions free = options;
+  constexpr double kFree = 10;
+  free.pose_sigma *= kFree;
+  free.turn_sigma *= kFree;
+  free.joint_sigma *= kFree;
+  HandFitProblem now(model, cameras, observation, last, X_predicted, fit_scale, false, free);
+  other = Solve(now, model, other, 2 * options.iterations);
+  constexpr double kClearlyBetter = 1.5;
+  return other.cost < Solve(now, model, fit, 0).cost - kClearlyBetter ? other : fit;
+}
+
 }  // namespace
 
 Eigen::Vector3d FittedTip(const HandModel& model, const HandFit& fit, int finger) {
@@ -126,37 +164,9 @@ HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
   HandFit start = last;
   start.X_WH = X_predicted;
   HandFit fit = Solve(problem, model, start, options.iterations);
-  if (tips < 3) {
-    fit.frame = last.frame + 1;
-    JudgeTips(model, observation, fit);
-    return fit;
+  if (tips >= 3) {
+    fit = TryWayOut(model, cameras, observation, last, X_predicted, fit_scale, options, fit);
   }
-  // A hand that fled up the forearm or rolled over fits the tips nearly as well: every frame one
-  // way out is tried, about the fingertips.
-  static const std::array<Eigen::Vector3d, 6> kShifts = {
-      {{0.025, 0, 0}, {0, 0, 0}, {0, 0, 0}, {-0.02, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
-  static const std::array<Eigen::Vector3d, 6> kTurns = {
-      {{0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0}, {0, 0, 0}, {-0.3, 0, 0}, {0, -0.3, 0}}};
-  const int way = last.frame % static_cast<int>(kShifts.size());
-  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
-  for (const auto& tip : observation.tip_W) {
-    if (tip) pivot += *tip / tips;
-  }
-  HandFit other = fit;
-  const Eigen::Matrix3d turn = ExpRotation(fit.X_WH.linear() * kTurns[way]).toRotationMatrix();
-  other.X_WH.linear() = turn * fit.X_WH.linear();
-  other.X_WH.translation() =
-      pivot + turn * (fit.X_WH.translation() - pivot) + fit.X_WH.linear() * kShifts[way];
-  // Both are judged by this frame alone: the past led into the wrong one.
-  HandPoseOptions free = options;
-  constexpr double kFree = 10;
-  free.pose_sigma *= kFree;
-  free.turn_sigma *= kFree;
-  free.joint_sigma *= kFree;
-  HandFitProblem now(model, cameras, observation, last, X_predicted, fit_scale, false, free);
-  other = Solve(now, model, other, 2 * options.iterations);
-  constexpr double kClearlyBetter = 1.5;
-  if (other.cost < Solve(now, model, fit, 0).cost - kClearlyBetter) fit = other;
   fit.frame = last.frame + 1;
   JudgeTips(model, observation, fit);
   return fit;

@@ -165,6 +165,19 @@ bool InFingerOrder(const PerFinger<Eigen::Vector2d>& caps, const PerFinger<bool>
   return true;
 }
 
+PerFinger<int> OrderAboutPalm(const PerFinger<Eigen::Vector2d>& caps, const Eigen::Vector2d& palm,
+                              int turn) {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (int f = kIndex; f < kNumFingers; ++f) middle += caps[f] / 4;
+  const auto angle = [&](int f) {
+    return turn * std::remainder(PolarAngle(caps[f], palm) - PolarAngle(middle, palm), kTurn);
+  };
+  PerFinger<int> order = {0, 1, 2, 3, 4};
+  std::stable_sort(order.begin() + kIndex, order.end(),
+                   [&](int a, int b) { return angle(a) < angle(b); });
+  return order;
+}
+
 Eigen::Vector2d PalmFromCaps(const PerFinger<Eigen::Vector2d>& caps) {
   // |p|^2 = 2 c.p + d, linear in c and d.
   Eigen::Matrix<double, kNumFingers, 3> A;

@@ -56,6 +56,10 @@ PerFinger<int> LabelFingers(const PerFinger<Eigen::Vector2d>& caps, const Eigen:
 // pinkie has growing atan2(v, u), else -1. Fewer than three are always in order.
 bool InFingerOrder(const PerFinger<Eigen::Vector2d>& caps, const PerFinger<bool>& seen,
                    const Eigen::Vector2d& palm, int turn);
+// Index to pinkie sorted by polar angle about the palm, seen from their middle and along `turn`:
+// entry f is whose cap stands where f's should. The thumb, which may well cross, stays.
+PerFinger<int> OrderAboutPalm(const PerFinger<Eigen::Vector2d>& caps, const Eigen::Vector2d& palm,
+                              int turn);
 // The turn of a labelling.
 int FingerTurn(const PerFinger<Eigen::Vector2d>& caps, const Eigen::Vector2d& palm);
 

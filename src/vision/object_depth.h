@@ -4,18 +4,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <opencv2/core.hpp>
-#include <optional>
 
 #include "base/pose.h"
-#include "base/shape.h"
 #include "demonstration/demonstration.h"
 #include "vision/camera_model.h"
 
 namespace springgrasp {
-
-// Length of the ray p + s d (d unit, both in O) up to the surface, m; nothing if it misses.
-std::optional<double> RayToShape(const Shape& shape, const Eigen::Vector3d& p_O,
-                                 const Eigen::Vector3d& d_O);
 
 // Depth along the optical axis of the object's surface: entry (i, j) stands for picture pixel
 // (j * step, i * step).

@@ -48,7 +48,10 @@ class HandFollower {
     if (fit_scale) {
       CountForearm();
     } else if (forearm_frames_ > 0) {
-      KeepForearmSeen();
+      std::vector<bool> bare;
+      for (const int seen : forearm_seen_) bare.push_back(2 * seen > forearm_frames_);
+      KeepBareForearm(bare, model_);
+      forearm_frames_ = 0;
     }
     return &*fit_;
   }
@@ -100,25 +103,6 @@ class HandFollower {
       }
       forearm_seen_[i] += views == 2;
     }
-  }
-
-  // A sleeve stays where it is: what of the forearm was bare at first is part of the hand from now
-  // on, the rest explains no skin any more.
-  void KeepForearmSeen() {
-    std::vector<HandBall> kept;
-    bool bare = true;
-    for (std::size_t i = 0; i < model_.balls.size(); ++i) {
-      if (!model_.balls[i].forearm) {
-        kept.push_back(model_.balls[i]);
-      } else if (bare && 2 * forearm_seen_[i] > forearm_frames_) {
-        kept.push_back(model_.balls[i]);
-      } else if (bare) {
-        bare = false;
-        if (kept.back().forearm) kept.back().cut = true;
-      }
-    }
-    model_.balls = kept;
-    forearm_frames_ = 0;
   }
 
   HandModel model_;

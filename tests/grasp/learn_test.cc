@@ -40,22 +40,6 @@ TEST(LearnTest, FindsFramesContactsAndDurationOfACleanPinch) {
   for (const GraspEdge& edge : grasp.edges) EXPECT_GE(edge.k, 0);
 }
 
-TEST(LearnTest, TheHandRestsAtItsGoalAfterTheReach) {
-  SyntheticGrasp made;
-  made.shape = ParseShape("sphere:0.04");
-  made.tip_noise = 0.001;
-  for (const std::uint64_t seed : {1, 2, 3}) {
-    const Grasp grasp = Learn(made, seed);
-    const double T = grasp.scales.T;
-    const Pose X_OG = RolloutPoseDmp(grasp.reach, Eigen::Vector2d(T, 1.5 * T)).X_WB.back();
-    const Pose X_goal = GoalPose(grasp.reach);
-    EXPECT_LT((X_OG.translation() - X_goal.translation()).norm(), 0.002);
-    EXPECT_LT(
-        RotationDistance(Eigen::Quaterniond(X_OG.linear()), Eigen::Quaterniond(X_goal.linear())),
-        0.03);
-  }
-}
-
 TEST(LearnTest, ObjectIsInferredWhereNoneIsGiven) {
   SyntheticGrasp made;
   made.shape = ParseShape("sphere:0.04");

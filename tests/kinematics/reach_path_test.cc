@@ -18,7 +18,7 @@ ReachPathRequest MakeWay() {
   const Pose X_WH_goal = HandPose(arm, request.q_goal);
   for (int k = 0; k < kSamples; ++k) {
     Pose X = X_WH_goal;
-    X.translation().y() += 0.12 * (1 - MinimumJerkPosition(std::min(1.0, k / 250.0)));
+    X.translation().y() += 0.12 * (1 - MinimumJerkPosition(k / 250.0));
     request.X_WH.push_back(X);
   }
   return request;
@@ -32,7 +32,7 @@ void ExpectSteps(const ReachPath& path, const ReachPathRequest& request) {
     const Pose X = HandPose(TestArm(), path.q[k]);
     EXPECT_LT((X.translation() - path.X_WH[k].translation()).norm(), 2e-4);
     if (k > 0) {
-      EXPECT_LE((path.q[k] - path.q[k - 1]).cwiseAbs().maxCoeff(), request.max_step);
+      EXPECT_LE((path.q[k] - path.q[k - 1]).cwiseAbs().maxCoeff(), request.max_speed * request.dt);
     }
   }
   for (int k = path.join; k < kSamples; ++k) {
@@ -64,7 +64,8 @@ TEST(ReachPathTest, AWayThatBeginsOutOfReachIsJoinedFromTheStart) {
     return path.q[k + 1] - 2 * path.q[k] + path.q[k - 1];
   };
   for (int k = 2; k < path.join + 10; ++k) {
-    EXPECT_LT((bend(k) - bend(k - 1)).cwiseAbs().maxCoeff(), 0.02 * request.max_step) << k;
+    EXPECT_LT((bend(k) - bend(k - 1)).cwiseAbs().maxCoeff(), 0.02 * request.max_speed * request.dt)
+        << k;
   }
 }
 

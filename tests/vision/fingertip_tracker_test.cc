@@ -100,6 +100,47 @@ TEST(FingertipTrackerTest, AHiddenFingerIsMissingThenFoundAgain) {
   }
 }
 
+// The four fingers are hidden for a while; when they come back, the hand has turned by `degrees`
+// about the line of sight, so that every finger stands where another one was expected.
+Frame RenderTurned(const StereoCameras& eyes, bool covered, double degrees) {
+  const Eigen::Vector3d palm(0.05, 0.05, 0.62);
+  DrawnHand hand = MakeDrawnHand(palm, 0);
+  const Eigen::AngleAxisd turn(degrees * M_PI / 180, Eigen::Vector3d::UnitZ());
+  const auto turned = [&](const Eigen::Vector3d& p) -> Eigen::Vector3d {
+    return palm + turn * (p - palm);
+  };
+  for (Eigen::Vector3d& tip : hand.tips) tip = turned(tip);
+  for (DrawnCapsule& capsule : hand.capsules) {
+    capsule.a = turned(capsule.a);
+    capsule.b = turned(capsule.b);
+  }
+  if (covered) {
+    for (int f = kIndex; f < kNumFingers; ++f) {
+      const Eigen::Vector3d before = hand.tips[f] - Eigen::Vector3d(-0.006, 0, 0.12);
+      hand.capsules.push_back({before, before, 0.024, {160, 60, 60}});
+    }
+  }
+  return {DrawCapsules(eyes.left, hand.capsules), DrawCapsules(eyes.right, hand.capsules),
+          hand.tips};
+}
+
+TEST(FingertipTrackerTest, LabelsExchangedWhileHiddenAreRestored) {
+  const StereoCameras eyes = TestEyes();
+  FingertipTracker tracker(eyes, Options());
+  RandomEngine engine = MakeStream(1, 0, "observation");
+  double last = 0, worst = 0;
+  for (int k = 0; k <= 15; ++k) {
+    const Frame frame =
+        RenderTurned(eyes, k >= 3 && k < 8, k < 3 ? 0 : std::min(1.0, (k - 2) / 5.0) * 20);
+    const std::optional<TrackedFrame> seen = Track(tracker, frame, k, engine);
+    ASSERT_TRUE(seen);
+    last = LargestError(*seen, frame.tips);
+    worst = std::max(worst, last);
+  }
+  ASSERT_GT(worst, 0.02) << "nothing was exchanged";
+  EXPECT_LT(last, 0.012);
+}
+
 TEST(FingertipTrackerTest, EqualFramesAndSeedGiveEqualNumbers) {
   const StereoCameras eyes = TestEyes();
   std::vector<Eigen::Vector3d> runs[2];

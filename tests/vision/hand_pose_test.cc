@@ -104,11 +104,16 @@ double TurnDeg(const HandFit& a, const HandFit& b) {
          180 / M_PI;
 }
 
-TEST(HandPoseTest, AnOpenHandIsFoundWithoutAGuess) {
+// An open hand before two eyes, and what they see of it.
+class HandPoseTest : public testing::Test {
+ protected:
   const HandModel model = MakeHandModel(TestHand());
   const StereoCameras eyes = TestEyes();
-  const HandFit truth = OpenHand(model);
+  HandFit truth = OpenHand(model);
   Seen seen;
+};
+
+TEST_F(HandPoseTest, AnOpenHandIsFoundWithoutAGuess) {
   See(model, truth, eyes, seen);
   const auto fit = StartHandFit(model, eyes, seen.observation);
   ASSERT_TRUE(fit);
@@ -118,11 +123,8 @@ TEST(HandPoseTest, AnOpenHandIsFoundWithoutAGuess) {
   EXPECT_LT(fit->tip_rms, 0.004);
 }
 
-TEST(HandPoseTest, AMovingHandIsFollowed) {
-  const HandModel model = MakeHandModel(TestHand());
-  const StereoCameras eyes = TestEyes();
-  HandFit truth = OpenHand(model), fit = truth;
-  Seen seen;
+TEST_F(HandPoseTest, AMovingHandIsFollowed) {
+  HandFit fit = truth;
   HandStep step;
   for (int k = 0; k < 12; ++k) {
     truth.X_WH.translation() += Eigen::Vector3d(-0.006, 0.002, -0.002);
@@ -139,15 +141,11 @@ TEST(HandPoseTest, AMovingHandIsFollowed) {
   EXPECT_LT(TurnDeg(fit, truth), 10);
 }
 
-TEST(HandPoseTest, AnObjectInFrontOfTheHandDoesNotPushItAway) {
-  const HandModel model = MakeHandModel(TestHand());
-  const StereoCameras eyes = TestEyes();
-  const HandFit truth = OpenHand(model);
+TEST_F(HandPoseTest, AnObjectInFrontOfTheHandDoesNotPushItAway) {
   // A post between the eyes and the palm.
   DemonstratedObject post{ParseShape("cylinder:0.05x0.3"), Pose::Identity()};
   post.X_WO.linear() = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitY()).toRotationMatrix();
   post.X_WO.translation() = truth.X_WH * Eigen::Vector3d(0.05, 0, -0.06);
-  Seen seen;
   See(model, truth, eyes, seen);
   const KnownObject known{post, {SeeObject(eyes.left, post), SeeObject(eyes.right, post)}};
   int hidden = 0;
@@ -176,11 +174,7 @@ TEST(HandPoseTest, AnObjectInFrontOfTheHandDoesNotPushItAway) {
   EXPECT_LT(told, untold);
 }
 
-TEST(HandPoseTest, WithTwoTipsThePictureGoesOn) {
-  const HandModel model = MakeHandModel(TestHand());
-  const StereoCameras eyes = TestEyes();
-  const HandFit truth = OpenHand(model);
-  Seen seen;
+TEST_F(HandPoseTest, WithTwoTipsThePictureGoesOn) {
   See(model, truth, eyes, seen);
   for (int f = kMiddle; f < kNumFingers; ++f) seen.observation.tip_W[f].reset();
   const HandFit fit = UpdateHandFit(model, eyes, seen.observation, truth, {}, false);
@@ -189,7 +183,7 @@ TEST(HandPoseTest, WithTwoTipsThePictureGoesOn) {
   EXPECT_FALSE(StartHandFit(model, eyes, seen.observation));
 }
 
-TEST(HandPoseTest, AHandWithoutFingertipFramesIsRefused) {
+TEST_F(HandPoseTest, AHandWithoutFingertipFramesIsRefused) {
   KinematicTree tree = TestHand();
   tree.frames.pop_back();
   EXPECT_THROW(MakeHandModel(tree), Error);

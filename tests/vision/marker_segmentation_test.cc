@@ -56,6 +56,19 @@ TEST(FingerOrderTest, ASwapOfNeighboursIsAViolation) {
   EXPECT_TRUE(InFingerOrder(caps, {true, true, false, true, true}, palm, turn));
 }
 
+TEST(FingerOrderTest, ExchangedFingersAreSortedBackWhicheverWayTheHandPoints) {
+  const Eigen::Vector2d palm(300, 200);
+  for (double angle = 0; angle < 6.2; angle += 0.7) {
+    const auto right = RightHand(angle, palm);
+    PerFinger<Eigen::Vector2d> caps = right;
+    caps[kIndex] = right[kMiddle];
+    caps[kMiddle] = right[kRing];
+    caps[kRing] = right[kIndex];
+    const auto order = OrderAboutPalm(caps, palm, FingerTurn(right, palm));
+    for (int f = 0; f < kNumFingers; ++f) EXPECT_EQ(caps[order[f]], right[f]) << f << " " << angle;
+  }
+}
+
 TEST(PalmFromCapsTest, LiesInsideTheArc) {
   const Eigen::Vector2d palm(300, 200);
   EXPECT_LT((PalmFromCaps(RightHand(0.3, palm)) - palm).norm(), 1e-6);

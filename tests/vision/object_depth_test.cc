@@ -5,27 +5,6 @@
 namespace springgrasp {
 namespace {
 
-TEST(RayToShapeTest, MeetsTheNearSurface) {
-  const Eigen::Vector3d from(-1, 0.004, 0.01), along = Eigen::Vector3d::UnitX();
-  EXPECT_NEAR(*RayToShape(ParseShape("box:0.04x0.06x0.1"), from, along), 1 - 0.02, 1e-12);
-  EXPECT_NEAR(*RayToShape(ParseShape("cylinder:0.05x0.18"), from, along),
-              1 - std::sqrt(0.025 * 0.025 - 0.004 * 0.004), 1e-12);
-  EXPECT_NEAR(*RayToShape(ParseShape("sphere:0.04"), from, along),
-              1 - std::sqrt(0.02 * 0.02 - 0.004 * 0.004 - 0.01 * 0.01), 1e-12);
-  const Eigen::Vector3d above(0.01, 0, 1);
-  EXPECT_NEAR(*RayToShape(ParseShape("cylinder:0.05x0.18"), above, -Eigen::Vector3d::UnitZ()),
-              1 - 0.09, 1e-12);
-}
-
-TEST(RayToShapeTest, MissesWhatIsBesideOrBehind) {
-  for (const char* shape : {"box:0.04x0.06x0.1", "cylinder:0.05x0.1", "sphere:0.04"}) {
-    const Eigen::Vector3d along = Eigen::Vector3d::UnitX();
-    EXPECT_FALSE(RayToShape(ParseShape(shape), {-1, 0.2, 0}, along)) << shape;
-    EXPECT_FALSE(RayToShape(ParseShape(shape), {-1, 0, 0.2}, along)) << shape;
-    EXPECT_FALSE(RayToShape(ParseShape(shape), {1, 0, 0}, along)) << shape;
-  }
-}
-
 TEST(SeeObjectTest, CoversThePixelsOfItsPoints) {
   const CameraModel camera;  // in the origin, looking along z
   DemonstratedObject object{ParseShape("sphere:0.1"), Pose::Identity()};
