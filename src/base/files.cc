@@ -27,9 +27,9 @@ std::string ReadFile(const std::string& path) {
 void WriteThroughTemporary(const std::string& path,
                            const std::function<void(const std::string& temporary)>& write) {
   const fs::path target(path);
-  const fs::path temporary = target.parent_path() / fmt::format(".{}.{}.tmp{}",
-                                                                target.stem().string(), getpid(),
-                                                                target.extension().string());
+  const fs::path temporary =
+      target.parent_path() /
+      fmt::format(".{}.{}.tmp{}", target.stem().string(), getpid(), target.extension().string());
   std::error_code ignored;
   try {
     write(temporary.string());

@@ -20,14 +20,13 @@ RandomEngine MakeStream(std::uint64_t experiment_seed, std::uint64_t repetition,
   std::seed_seq seed{static_cast<std::uint32_t>(experiment_seed),
                      static_cast<std::uint32_t>(experiment_seed >> 32),
                      static_cast<std::uint32_t>(repetition),
-                     static_cast<std::uint32_t>(repetition >> 32), static_cast<std::uint32_t>(name),
+                     static_cast<std::uint32_t>(repetition >> 32),
+                     static_cast<std::uint32_t>(name),
                      static_cast<std::uint32_t>(name >> 32)};
   return RandomEngine(seed);
 }
 
-double Uniform01(RandomEngine& engine) {
-  return static_cast<double>(engine() >> 11) * 0x1.0p-53;
-}
+double Uniform01(RandomEngine& engine) { return static_cast<double>(engine() >> 11) * 0x1.0p-53; }
 
 double Uniform(RandomEngine& engine, double lower, double upper) {
   return lower + (upper - lower) * Uniform01(engine);

@@ -18,7 +18,9 @@ struct YamlReader::Impl {
   std::vector<std::string> known;
   std::set<std::string> asked;
 
-  std::string At(const YAML::Node& n) const { return fmt::format("{}:{}", file, n.Mark().line + 1); }
+  std::string At(const YAML::Node& n) const {
+    return fmt::format("{}:{}", file, n.Mark().line + 1);
+  }
   std::string Name(const std::string& key) const { return path.empty() ? key : path + "." + key; }
   YAML::Node Find(const std::string& key) {
     if (asked.insert(key).second) known.push_back(key);
@@ -191,8 +193,10 @@ void YamlReader::Read(const std::string& key, Pose& value) {
   const YAML::Node n = impl_->Find(key);
   if (!n.IsDefined()) return;
   std::vector<double> v = Numbers(n, {}, impl_->At(n), impl_->Name(key));
-  ThrowUnless(v.size() == 3 || v.size() == 7, "{}: {} has {} numbers, expected 3 (x y z) or 7 "
-              "(x y z qw qx qy qz)", impl_->At(n), impl_->Name(key), v.size());
+  ThrowUnless(v.size() == 3 || v.size() == 7,
+              "{}: {} has {} numbers, expected 3 (x y z) or 7 "
+              "(x y z qw qx qy qz)",
+              impl_->At(n), impl_->Name(key), v.size());
   if (v.size() == 3) v.insert(v.end(), {1, 0, 0, 0});
   const double norm = Eigen::Map<Eigen::Vector4d>(&v[3]).norm();
   ThrowUnless(std::abs(norm - 1) < 1e-2, "{}: {} has a quaternion of norm {}, expected 1",
@@ -295,13 +299,17 @@ std::string ApplyOverride(const std::string& yaml_text, const std::string& key_e
       ThrowUnless(!key.empty() && *end == '\0' && index < node.size(),
                   "--set '{}': '{}' is not an index into a list of {}", key_equals_value, key,
                   node.size());
-      if (last) node[index] = value;
-      else next.reset(node[index]);
+      if (last)
+        node[index] = value;
+      else
+        next.reset(node[index]);
     } else {
       ThrowUnless(!node.IsScalar(), "--set '{}': '{}' is inside a plain value", key_equals_value,
                   key);
-      if (last) node[key] = value;
-      else next.reset(node[key]);
+      if (last)
+        node[key] = value;
+      else
+        next.reset(node[key]);
     }
     if (last) break;
     node.reset(next);

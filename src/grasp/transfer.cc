@@ -25,8 +25,8 @@ Grasp EncloseAlongAxis(const Grasp& grasp, const Shape& shape) {
     turned.rays[i].height = p_N.z() / shape.size.z();
     turned.rays[i].direction = Eigen::Vector3d(p_N.x(), p_N.y(), 0).normalized();
   }
-  turned.reach = WithEndpoints(grasp.reach, X_NO * StartPose(grasp.reach),
-                               X_NO * GoalPose(grasp.reach));
+  turned.reach =
+      WithEndpoints(grasp.reach, X_NO * StartPose(grasp.reach), X_NO * GoalPose(grasp.reach));
   turned.reach.motion.weights.leftCols<3>() =
       (grasp.reach.motion.weights.leftCols<3>() * X_NO.linear().transpose()).eval();
   return turned;
