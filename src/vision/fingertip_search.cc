@@ -218,6 +218,23 @@ void FingertipTracker::Impl::Search() {
   }
 }
 
+// Caps that touch are two radii apart: fingers measured within one of each other stand on a single
+// cap. The one farther from where it should be is lost, and sought again in the next frame.
+void FingertipTracker::Impl::DropShared(TrackedFrame& frame) {
+  const auto off = [&](int f) {
+    return (*frame.fingers[f].p_W - fingers[f].p_W - fingers[f].v_W).norm();
+  };
+  for (int f = 0; f < kNumFingers; ++f) {
+    for (int g = 0; g < f; ++g) {
+      if (!frame.fingers[f].p_W || !frame.fingers[g].p_W) continue;
+      if ((*frame.fingers[f].p_W - *frame.fingers[g].p_W).norm() > cap.radius) continue;
+      const int loser = off(f) > off(g) ? f : g;
+      frame.fingers[loser] = TrackedFinger();
+      for (View& view : views) view.active[loser] = false;
+    }
+  }
+}
+
 // Fingers pass each other, but they do not stay crossed: where both views have long seen the same
 // wrong order about the palm, the labels were exchanged while caps were not seen.
 void FingertipTracker::Impl::RestoreOrder() {

@@ -183,7 +183,8 @@ TrackedFrame FingertipTracker::Impl::Update(const cv::Mat& left, const cv::Mat& 
   }
   Search();
   RestoreOrder();
-  const TrackedFrame frame = Measure(pictures);
+  TrackedFrame frame = Measure(pictures);
+  DropShared(frame);
 
   // The hand's common motion carries what is not seen.
   Eigen::Vector3d common = Eigen::Vector3d::Zero();

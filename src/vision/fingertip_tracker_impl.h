@@ -102,6 +102,7 @@ struct FingertipTracker::Impl {
   PerFinger<bool> FindDoubtful() const;
   void Reseed(const PerFinger<bool>& doubtful);
   void DropCollisions();
+  void DropShared(TrackedFrame& frame);
   void RestoreOrder();
   void Label(const PerFinger<Eigen::Vector3d>& p_WCaps, const PerFinger<int>& order);
   TrackedFrame Measure(const std::array<const cv::Mat*, 2>& pictures);

@@ -141,6 +141,28 @@ TEST(FingertipTrackerTest, LabelsExchangedWhileHiddenAreRestored) {
   EXPECT_LT(last, 0.012);
 }
 
+// Caps are 38 mm apart; a jump of 30 degrees in one frame puts two fingers onto one cap.
+TEST(FingertipTrackerTest, NoTwoFingersStayOnOneCap) {
+  for (const double degrees : {-30.0, 30.0}) {
+    const StereoCameras eyes = TestEyes();
+    FingertipTracker tracker(eyes, Options());
+    RandomEngine engine = MakeStream(1, 0, "observation");
+    for (int k = 0; k <= 8; ++k) {
+      const Frame frame = RenderTurned(eyes, false, k < 2 ? 0 : degrees);
+      const std::optional<TrackedFrame> seen = Track(tracker, frame, k, engine);
+      ASSERT_TRUE(seen);
+      for (int f = 0; f < kNumFingers; ++f) {
+        for (int g = 0; g < f; ++g) {
+          if (!seen->fingers[f].p_W || !seen->fingers[g].p_W) continue;
+          EXPECT_GT((*seen->fingers[f].p_W - *seen->fingers[g].p_W).norm(), 0.02)
+              << kFingerNames[f] << " and " << kFingerNames[g] << ", " << degrees
+              << " degrees, frame " << k;
+        }
+      }
+    }
+  }
+}
+
 TEST(FingertipTrackerTest, EqualFramesAndSeedGiveEqualNumbers) {
   const StereoCameras eyes = TestEyes();
   std::vector<Eigen::Vector3d> runs[2];
