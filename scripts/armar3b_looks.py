@@ -1,10 +1,11 @@
 """How the robot looks: materials and visual shapes, drawn after photographs of ARMAR-III, estimated by eye.
 
 Shapes of torso and head are given in the robot's root frame at zero joint angles (x right, y forward, z up), those of
-arm and hand in the frame of their body, where the long axes are simple.
+the right arm and hand in the frame of their body, where the long axes are simple; the left ones are their mirror image.
 """
 
-from mjcf_tools import add, compose, inverse, transform
+from armar3b_tree import all_bodies
+from mjcf_tools import add, conjugate, inverse, multiply, transform
 
 MATERIALS = {  # rgba, specular, shininess
     "shell": ((0.36, 0.45, 0.58, 1), 0.5, 0.6),
@@ -16,15 +17,37 @@ MATERIALS = {  # rgba, specular, shininess
     "lens": ((0.02, 0.02, 0.03, 1), 0.9, 0.9),
 }
 
-PLATFORM_COLLISION = [  # within the published bounds (half 0.34 x 0.34, top 0.95), split by eye
-    ("armar3b_base", (0.0, 0.0, 0.26), (0.335, 0.24)),
-    ("armar3b_column", (0.0, 0.08, 0.70), (0.20, 0.20)),
-]
+COLLISION = {  # in the frame of the body; instead of the published shape
+    # within the published bounds (half 0.34 x 0.34, top 0.95), split by eye
+    "armar3b": [{"type": "cylinder", "pos": (0.0, 0.0, 0.26), "size": (0.335, 0.24)},
+                {"type": "cylinder", "pos": (0.0, 0.08, 0.70), "size": (0.20, 0.20)}],
+    # the published box ends above the neck's joint and inside the shoulders
+    "torso_yaw": [{"type": "box", "pos": (0.0, -0.0517, 0.2757), "size": (0.170, 0.1474, 0.2543)},
+                  {"type": "box", "pos": (0.0, -0.0517, 0.5600), "size": (0.110, 0.0900, 0.0350)}],
+    "neck_1_pitch": [{"fromto": (0.006, 0, -0.034, 0.006, 0, 0.034), "size": 0.0200}],
+    # slim towards elbow and wrist, so that both bend to their ends
+    "arm_r_upperarm": [{"fromto": (0.001, 0, -0.06, 0.001, 0, -0.185), "size": 0.041},
+                       {"fromto": (0.001, 0, -0.185, 0.001, 0, -0.235), "size": 0.028}],
+    "arm_r_underarm": [{"fromto": (0, 0, -0.108, 0, 0, -0.145), "size": 0.044},
+                       {"fromto": (0, 0, -0.145, 0, 0, -0.175), "size": 0.024}],
+}
 
-POSTURES = [  # name; torso 3, neck and head 4, eyes 3; right arm 7
-    ("home", (0,) * 10, (0,) * 7),
-    ("ready", (0, 0, 0, 0, 0, 0, -0.35, 0.25, 0, 0), (-0.2, 0.2, 0.0, -0.1, 1.3, 0.0, 0.0)),
-]
+
+def collision_of(body):
+    """Our shapes for a body, or None where the published one is used."""
+    return COLLISION.get(body.replace("_l_", "_r_"))
+
+
+POSTURES = {  # name: torso 3, neck and head 4, eyes 3; right arm 7 (the left mirrors it); posture of the hands
+    "home": ((0,) * 10, (0,) * 7, "open"),
+    "ready": ((0, 0, 0, 0, 0, 0, -0.35, 0.25, 0, 0), (-0.2, 0.2, 0.0, -0.1, 1.3, 0.0, 0.0), "open"),
+    "look_at_table": ((0, 0, 0, -0.35, 0, 0, -0.5, 0.35, 0, 0), (0.25, 0.25, 0, -0.35, 0.9, 0, 0), "open"),
+    "arms_out": ((0,) * 10, (0, 0.9, 0, 0, 0.8, 0, 0), "open"),
+    "hand_open": ((0, 0, 0, 0, 0, 0, -0.35, 0.25, 0, 0), (-0.2, 0.2, 0.0, -0.1, 1.3, 0.0, 0.0), "open"),
+    "hand_power": ((0, 0, 0, 0, 0, 0, -0.35, 0.25, 0, 0), (-0.2, 0.2, 0.0, -0.1, 1.3, 0.0, 0.0), "power"),
+    "hand_pinch": ((0, 0, 0, 0, 0, 0, -0.35, 0.25, 0, 0), (-0.2, 0.2, 0.0, -0.1, 1.3, 0.0, 0.0), "pinch"),
+}
+ARM_MIRROR = (1, -1, -1, 1, -1, -1, 1)  # of the seven joint angles, right to left
 
 
 def _shape(material, kind, *, size, pos=None, fromto=None, quat=None):
@@ -90,7 +113,9 @@ IN_ROOT_FRAME = {
 
 _EYE = [_ball("eyeball", (-0.004, 0, 0), 0.0225),
         _rod("metal", "cylinder", (0.0135, 0, 0), (0.0180, 0, 0), 0.0105),
-        _rod("lens", "cylinder", (0.0180, 0, 0), (0.0186, 0, 0), 0.0080)]
+        _rod("lens", "cylinder", (0.0180, 0, 0), (0.0186, 0, 0), 0.0080),
+        _rod("metal", "cylinder", (0.0120, 0, -0.0140), (0.0180, 0, -0.0140), 0.0050),
+        _rod("lens", "cylinder", (0.0180, 0, -0.0140), (0.0186, 0, -0.0140), 0.0036)]
 
 IN_BODY_FRAME = {
     "eye_l_pan": _EYE,
@@ -161,15 +186,47 @@ def add_materials(root):
         add(asset, "material", name=name, rgba=rgba, specular=specular, shininess=shininess)
 
 
-def add_visuals(element, body, pose_in_root):
-    """Adds the body's visual geoms; `pose_in_root` is X_RootBody at zero joint angles."""
+def add_carrier(element):
+    """Bracket of the variant's thumb, from the opposition axis to the thumb's axle."""
+    add(element, "geom", class_="visual", type="cylinder", material="metal", size=0.009, fromto=(0, 0, -0.012, 0, 0, 0.012))
+    add(element, "geom", class_="visual", type="capsule", material="metal", size=0.006, fromto=(0, 0, 0, -0.0402, 0, 0))
+
+
+def _mirrored(body, tree):
+    """X_LeftRight: takes a shape of the right body to the left one; both were published, so the frames differ."""
+    sources = {name: source for name, source, _ in all_bodies()}
+    left = tree.pose_in(sources[body], "Platform")
+    right = tree.pose_in(sources[body.replace("_l_", "_r_").replace("hand_l", "hand_r")], "Platform")
+
+    def point(p):
+        x, y, z = transform(right, p)
+        return transform(inverse(left), (-x, y, z))
+
+    # the mirror image of a rotation, mirrored again in the shape's own x, is a rotation
+    w, x, y, z = right[1]
+    return point, multiply(conjugate(left[1]), (w, x, -y, -z))
+
+
+def _add_shape(element, shape, point, quat):
+    placed = dict(shape)
+    if shape["fromto"] is not None:
+        placed["fromto"] = point(shape["fromto"][:3]) + point(shape["fromto"][3:])
+    else:
+        placed["pos"] = point(shape["pos"])
+        placed["quat"] = None if abs(quat[0]) > 1 - 1e-12 else quat
+    add(element, "geom", class_="visual", **placed)
+
+
+def add_visuals(element, body, pose_in_root, tree):
+    """Adds the body's visual geoms; `pose_in_root` is X_RootBody at zero joint angles. Left = right mirrored."""
     to_body = inverse(pose_in_root)
     for shape in IN_ROOT_FRAME.get(body, []):
-        if shape["fromto"] is not None:
-            ends = transform(to_body, shape["fromto"][:3]) + transform(to_body, shape["fromto"][3:])
-            add(element, "geom", class_="visual", **{**shape, "fromto": ends})
-        else:
-            pos, quat = compose(to_body, (shape["pos"], (1.0, 0.0, 0.0, 0.0)))
-            add(element, "geom", class_="visual", **{**shape, "pos": pos, "quat": None if quat[0] == 1.0 else quat})
-    for shape in IN_BODY_FRAME.get(body, []):
-        add(element, "geom", class_="visual", **shape)
+        _add_shape(element, shape, lambda p: transform(to_body, p), to_body[1])
+    right = body.replace("_l_", "_r_").replace("hand_l", "hand_r")
+    if body.startswith("eye") or right == body:
+        for shape in IN_BODY_FRAME.get(body, []):
+            _add_shape(element, shape, tuple, (1.0, 0.0, 0.0, 0.0))
+        return
+    point, quat = _mirrored(body, tree)
+    for shape in IN_BODY_FRAME.get(right, []):
+        _add_shape(element, shape, point, quat)

@@ -40,6 +40,7 @@ int Perform(const Options& options) {
   MakeFolderOf((folder / "outcome.yaml").string());
   MakeFolderOf(options.video);
   PerformGraspOptions perform;
+  perform.actuation = MakeStream(options.seed, 0, "actuation");
   perform.video = options.video;
   perform.camera = options.camera;
   perform.trajectory = (folder / "trajectory.csv").string();

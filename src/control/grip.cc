@@ -17,7 +17,7 @@ HandVector FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& 
     virtual_finger += p_HF[f];
     ++count;
   }
-  HandVector torque = HandVector::Zero();
+  HandVector torque = HandVector::Zero(q.size());
   if (count == 0) return torque;
   virtual_finger /= count;
   const Eigen::Vector3d axis = (virtual_finger - p_HF[kThumb]).normalized();
@@ -32,8 +32,8 @@ HandVector FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& 
   return torque;
 }
 
-HandVector EnclosingGripTorque(const EnclosingGrip& grip) {
-  HandVector torque = HandVector::Zero();
+HandVector EnclosingGripTorque(const EnclosingGrip& grip, int num_joints) {
+  HandVector torque = HandVector::Zero(num_joints);
   torque[0] = grip.palm;
   for (int f = 0; f < kNumFingers; ++f) {
     if (!grip.involved[f]) continue;

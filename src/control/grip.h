@@ -19,7 +19,7 @@ struct FingertipGrip {
 };
 
 // Joint torques J' F of a fingertip grip at posture q of the hand (tree with root H; frames
-// hand_?_<finger>_tip given by index). Nm, in the order of kHandJointNames.
+// hand_?_<finger>_tip given by index). Nm, in the order of q.
 HandVector FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
                                const HandVector& q, const FingertipGrip& grip);
 
@@ -31,7 +31,7 @@ struct EnclosingGrip {
   double thumb_distal =
       0.1;  // the thumb presses with its base: bent in, it would cross the fingers
 };
-HandVector EnclosingGripTorque(const EnclosingGrip& grip);
+HandVector EnclosingGripTorque(const EnclosingGrip& grip, int num_joints);
 
 // Thumb force that holds a mass against its weight and `acceleration` by friction of two opposed
 // contacts, times a safety factor; N.

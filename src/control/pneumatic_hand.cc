@@ -4,9 +4,12 @@
 
 namespace springgrasp {
 
-PneumaticHandModel::PneumaticHandModel() {
+PneumaticHandModel::PneumaticHandModel(const HandLayout& hand) : layout(hand) {
   torque_per_bar.setConstant(0.1);
   return_stiffness.setConstant(0.08);
+  return_rest.setConstant(-0.2);
+  // The opposition joint starts at -30 degrees, its spring as much before that as the others'.
+  if (hand.opposition >= 0) return_rest[hand.valve_of_joint[hand.opposition]] = -0.523599 - 0.2;
   torque_per_bar[0] = 0.2;
   return_stiffness[0] = 0.16;
 }
@@ -17,12 +20,13 @@ ValveVector ControlHand(const PneumaticHandModel& model, const PneumaticGains& g
   ValveVector torque = ValveVector::Zero();
   ValveVector error = ValveVector::Zero();
   ValveVector count = ValveVector::Zero();
-  for (int j = 0; j < kNumHandJoints; ++j) {
-    const int v = PneumaticHandModel::kValveOfJoint[j];
+  for (int j = 0; j < model.layout.num_joints(); ++j) {
+    const int v = model.layout.valve_of_joint[j];
     const double e = target.q[j] - state.hand_q[j];
     // Against the return spring, plus PD, plus what the grip asks for.
-    torque[v] += model.return_stiffness[v] * (target.q[j] - model.return_rest) +
-                 gains.stiffness * e - gains.damping * state.hand_qd[j] + target.torque[j];
+    torque[v] += model.return_stiffness[v] * (target.q[j] - model.return_rest[v]) +
+                 gains.stiffness * e - gains.damping * state.hand_qd[j] +
+                 (target.torque.size() > 0 ? target.torque[j] : 0.0);
     error[v] += e;
     count[v] += 1;
   }
@@ -42,10 +46,10 @@ ValveVector ControlHand(const PneumaticHandModel& model, const PneumaticGains& g
 }
 
 HandVector FreeAnglesAt(const PneumaticHandModel& model, const ValveVector& pressure) {
-  HandVector q;
-  for (int j = 0; j < kNumHandJoints; ++j) {
-    const int v = PneumaticHandModel::kValveOfJoint[j];
-    q[j] = model.return_rest + pressure[v] * model.torque_per_bar[v] / model.return_stiffness[v];
+  HandVector q(model.layout.num_joints());
+  for (int j = 0; j < model.layout.num_joints(); ++j) {
+    const int v = model.layout.valve_of_joint[j];
+    q[j] = model.return_rest[v] + pressure[v] * model.torque_per_bar[v] / model.return_stiffness[v];
   }
   return q;
 }

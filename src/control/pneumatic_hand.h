@@ -11,13 +11,11 @@ namespace springgrasp {
 
 // What the robot knows of its own chambers (models/armar3b/README.md says where from).
 struct PneumaticHandModel {
+  explicit PneumaticHandModel(const HandLayout& hand);
+  HandLayout layout;
   ValveVector torque_per_bar;    // g, Nm/bar on each joint of the valve
   ValveVector return_stiffness;  // κ, Nm/rad
-  double return_rest = -0.2;     // q0, rad
-  // Valve of every hand joint.
-  static constexpr std::array<int, kNumHandJoints> kValveOfJoint = {0, 1, 2, 3, 4, 5,
-                                                                    6, 7, 7, 7, 7};
-  PneumaticHandModel();
+  ValveVector return_rest;       // q0, rad
 };
 
 // Gains act on torque, per radian of joint error (measured starting values: physics notes on a
@@ -32,9 +30,9 @@ struct PneumaticGains {
 
 // What the hand shall do now.
 struct HandTarget {
-  HandVector q = HandVector::Zero();       // desired joint angles, rad
-  HandVector torque = HandVector::Zero();  // added joint torque (grip), Nm
-  bool integrate = true;                   // false holds the integral: the fingers press
+  HandVector q;           // desired joint angles, rad
+  HandVector torque;      // added joint torque (grip), Nm; empty: none
+  bool integrate = true;  // false holds the integral: the fingers press
 };
 
 struct HandControlState {

@@ -35,6 +35,8 @@ class Performer {
         options_(options),
         criteria_(options.criteria),
         observer_(observer),
+        hand_model_(robot.layout()),
+        drives_(options.pneumatics, simulation.timestep(), options.actuation),
         watch_(simulation, robot, object_, criteria_, performance_) {
     for (int f = 0; f < kNumFingers; ++f) {
       tip_frames_[f] = hand.FrameIndex(fmt::format("hand_r_{}_tip", kFingerNames[f]));
@@ -54,12 +56,11 @@ class Performer {
     if (plan_.type == "power") {
       EnclosingGrip enclosing;
       enclosing.involved = plan_.involved;
-      const PneumaticHandModel model;
-      enclosing.proximal = grip.enclosing_pressure * model.torque_per_bar[1];
+      enclosing.proximal = grip.enclosing_pressure * hand_model_.torque_per_bar[1];
       enclosing.distal = grip.distal_ratio * enclosing.proximal;
       enclosing.thumb_distal = grip.thumb_distal_ratio * enclosing.proximal;
       enclosing.palm = 0.5 * enclosing.proximal;
-      return EnclosingGripTorque(enclosing);
+      return EnclosingGripTorque(enclosing, robot_.layout().num_joints());
     }
     FingertipGrip fingertip;
     fingertip.involved = plan_.involved;
@@ -85,7 +86,9 @@ class Performer {
   // Returns false when the trial is over.
   bool Step(const ArmTarget& arm_target, const HandVector& hand_q, double grip, double load) {
     const double dt = simulation_.timestep();
-    const RobotState state = robot_.Read(simulation_);
+    RobotState state = robot_.Read(simulation_);
+    const ValveVector pressure = state.pressure;
+    drives_.Sense(state);
     RobotCommand command;
     ArmTarget target = arm_target;
     if (load > 0) target.feedforward_torque = load * LoadTorque(state);
@@ -109,6 +112,7 @@ class Performer {
     }
     command.valve_pressure = ControlHand(hand_model_, q_held_ ? options_.grip.hand : options_.hand,
                                          hand_target, state, dt, hand_memory_);
+    command.valve_pressure = drives_.Step(command.valve_pressure, pressure);
     robot_.Write(command, simulation_);
     simulation_.Step();
     watch_.Step(dt);
@@ -308,6 +312,7 @@ class Performer {
   const TrialCriteria& criteria_;
   const StepObserver& observer_;
   const PneumaticHandModel hand_model_;
+  PneumaticDrives drives_;
   PerFinger<int> tip_frames_;
   int arm_frame_ = 0;
   ArmControlState arm_memory_;
@@ -316,7 +321,7 @@ class Performer {
   TrialWatch watch_;  // writes into performance_, so it stands after it
   Pose planned_ = Pose::Identity();
   std::optional<HandVector> q_held_;
-  HandVector hand_planned_ = HandVector::Zero();
+  HandVector hand_planned_;
   double next_sample_ = 0;
 };
 

@@ -12,6 +12,7 @@
 #include "experiment/phases.h"
 #include "experiment/verdict.h"
 #include "kinematics/kinematic_tree.h"
+#include "sim/pneumatics.h"
 #include "sim/robot_io.h"
 #include "sim/simulation.h"
 
@@ -45,8 +46,10 @@ struct PerformOptions {
   GripOptions grip;
   ArmGains arm;
   PneumaticGains hand;
-  double max_finger_force = 5;  // N
-  double sample_dt = 0.01;      // s, of the recorded trajectory
+  PneumaticParameters pneumatics;  // of the scene
+  RandomEngine actuation{0};       // stream "actuation" of the trial: sensor noise
+  double max_finger_force = 5;     // N
+  double sample_dt = 0.01;         // s, of the recorded trajectory
 };
 
 // One row of the recorded trajectory.
@@ -55,10 +58,10 @@ struct TrajectorySample {
   Phase phase = Phase::kSettle;
   Pose X_WO, X_WH, X_WH_planned;
   PerFinger<Eigen::Vector3d> p_WF;
-  PerFinger<double> normal;                      // N
-  double palm_normal = 0;                        // N
-  RobotState state;                              // mass and bias left out of files
-  HandVector hand_planned = HandVector::Zero();  // rad
+  PerFinger<double> normal;  // N
+  double palm_normal = 0;    // N
+  RobotState state;          // mass and bias left out of files
+  HandVector hand_planned;   // rad
   RobotCommand command;
 };
 

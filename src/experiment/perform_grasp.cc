@@ -138,6 +138,8 @@ TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
   simulation.Forward();
   PerformOptions perform;
   perform.criteria = options.criteria;
+  perform.pneumatics = scene.pneumatics;
+  perform.actuation = options.actuation;
   perform.shape = scene.objects[0].shape.value_or(plan.plan->shape);
   perform.max_finger_force = scene.max_finger_force;
   std::optional<Filmer> filmer;
@@ -149,7 +151,8 @@ TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
               });
   if (filmer) filmer->Finish();
   if (!options.trajectory.empty()) {
-    WriteFileAtomically(options.trajectory, FormatTrajectory(performance.trajectory));
+    WriteFileAtomically(options.trajectory,
+                        FormatTrajectory(performance.trajectory, robot.layout()));
   }
   const TrialEvent verdict = DecideOutcome(performance.events);
   result.outcome = verdict.outcome;

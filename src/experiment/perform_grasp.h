@@ -14,6 +14,7 @@ namespace springgrasp {
 
 struct PerformGraspOptions {
   TrialCriteria criteria;
+  RandomEngine actuation{0};   // stream "actuation" of the trial
   bool believe_truth = false;  // the object's true pose, size, mass and friction are known
   std::string camera;          // of the video; empty: the scene's overview cameras side by side
   std::string video;           // .mp4, if not empty

@@ -22,7 +22,8 @@ void AppendPoseNames(std::string& text, const char* name) {
 
 }  // namespace
 
-std::string FormatTrajectory(const std::vector<TrajectorySample>& trajectory) {
+std::string FormatTrajectory(const std::vector<TrajectorySample>& trajectory,
+                             const HandLayout& hand) {
   std::string text = "t,phase";
   AppendPoseNames(text, "object");
   AppendPoseNames(text, "hand");
@@ -31,11 +32,11 @@ std::string FormatTrajectory(const std::vector<TrajectorySample>& trajectory) {
   for (const auto finger : kFingerNames) text += fmt::format(",{}_normal_n", finger);
   text += ",palm_normal_n";
   for (const auto joint : kArmJointNames) text += fmt::format(",arm_{}", joint);
-  for (const auto joint : kHandJointNames) text += fmt::format(",hand_{}", joint);
-  for (const auto joint : kHandJointNames) text += fmt::format(",hand_planned_{}", joint);
-  for (const auto valve : kValveNames) text += fmt::format(",{}_bar", valve);
+  for (const auto joint : hand.joints) text += fmt::format(",hand_{}", joint);
+  for (const auto joint : hand.joints) text += fmt::format(",hand_planned_{}", joint);
+  for (const auto valve : hand.valves) text += fmt::format(",{}_bar", valve);
   for (const auto joint : kArmJointNames) text += fmt::format(",{}_torque_nm", joint);
-  for (const auto valve : kValveNames) text += fmt::format(",{}_command_bar", valve);
+  for (const auto valve : hand.valves) text += fmt::format(",{}_command_bar", valve);
   text += '\n';
   for (const TrajectorySample& s : trajectory) {
     text += fmt::format("{:.4f},{}", s.t, PhaseName(s.phase));

@@ -23,6 +23,8 @@ constexpr double kLine = 0.05;           // rad, line of the contacts against th
 constexpr double kWrist = 0.1;           // rad, wrist out of the demonstrated half plane
 constexpr double kPenetration = 0.0005;  // m
 constexpr double kPalmJoint = 0.5;       // rad
+constexpr double kOpposition = 1;        // rad, of the thumb's turn from the human one
+constexpr double kOneValve = 0.2;        // rad, between a finger's joints on one valve
 constexpr double kLikeHuman = 4;         // rad, involved fingers
 constexpr double kOpen = 0.5;            // rad, fingers that should be out of the way
 constexpr double kLever = 0.01;          // m, of a joint that could not press
@@ -47,7 +49,8 @@ class FingertipRows {
   int num_rows() const {
     int involved = 0;
     for (const bool i : request_.involved) involved += i ? 1 : 0;
-    return 7 * involved + 7 + 2 * kNumFingers + 1 + static_cast<int>(hand_.capsules.size());
+    return 7 * involved + 7 + 2 * kNumFingers + 1 + (hand_.opposition >= 0 ? 2 : 0) +
+           static_cast<int>(hand_.capsules.size());
   }
 
   Pose ObjectPose(const Eigen::VectorXd& x) const {
@@ -114,6 +117,11 @@ class FingertipRows {
       }
     }
     r[row++] = hand_.palm >= 0 ? q[hand_.palm] / kPalmJoint : 0;
+    if (hand_.opposition >= 0) {
+      const RobotHand::Finger& thumb = hand_.fingers[kThumb];
+      r[row++] = (q[hand_.opposition] - request_.human.opposition) / kOpposition;
+      r[row++] = (q[thumb.j0] - q[thumb.j1]) / kOneValve;
+    }
     for (const LinkCapsule& c : hand_.capsules) {
       const Pose X_OB = X_OH * X_HB_[c.node];
       const double distance = CapsuleDistance(request_.shape, X_OB * c.a, X_OB * c.b, c.radius);

@@ -31,7 +31,7 @@ class MappingProblem {
         options_(options),
         J_full_(6, robot.tree.num_joints()) {
     smooth_ = previous.size() == robot.tree.num_joints() && options.smoothness > 0;
-    num_rows_ = 5 * kNumFingers + (robot.palm >= 0 ? 1 : 0);
+    num_rows_ = 5 * kNumFingers + (robot.palm >= 0 ? 1 : 0) + (robot.opposition >= 0 ? 1 : 0);
     for (const std::vector<int>& valve : robot.valves) {
       const int n = static_cast<int>(valve.size());
       num_rows_ += n * (n - 1) / 2;
@@ -66,6 +66,7 @@ class MappingProblem {
       ++row;
     };
     if (robot_.palm >= 0) add(options_.palm_weight / kPi, robot_.palm, options_.palm_wanted);
+    if (robot_.opposition >= 0) add(kJointScale, robot_.opposition, target_.opposition);
     for (const std::vector<int>& valve : robot_.valves) {
       for (std::size_t a = 0; a < valve.size(); ++a) {
         for (std::size_t b = a + 1; b < valve.size(); ++b) {
@@ -101,6 +102,7 @@ Eigen::VectorXd StartFromSigma(const RobotHand& robot, const MappingTarget& targ
     q[robot.fingers[f].j1] = target.sigma[f][1];
   }
   if (robot.palm >= 0) q[robot.palm] = options.palm_wanted;
+  if (robot.opposition >= 0) q[robot.opposition] = target.opposition;
   return q.cwiseMax(robot.tree.lower).cwiseMin(robot.tree.upper);
 }
 
@@ -120,6 +122,11 @@ MappingTarget TargetFromHuman(const HumanHand& human, const Eigen::VectorXd& q_h
                               const RobotHand& robot) {
   MappingTarget target;
   target.lambda.fill(1);
+  if (robot.opposition >= 0) {
+    target.opposition =
+        std::clamp(kPi / 2 - OppositionOf(human, q_human), robot.tree.lower[robot.opposition],
+                   robot.tree.upper[robot.opposition]);
+  }
   const PerFinger<FlexionAngles> flexion = FlexionOf(human, q_human);
   std::vector<Pose> X_human, X_robot;
   ForwardKinematics(human.tree, q_human, X_human);

@@ -18,13 +18,15 @@ struct MappingTarget {
   PerFinger<Eigen::Vector2d> sigma;  // wanted j0, j1, rad (already clipped to the joint ranges)
   PerFinger<Eigen::Vector3d> p_HF;   // wanted tips in the robot's H, m
   PerFinger<double> lambda;          // weight of the position term (Eq. 14: 1)
+  double opposition = 0;             // wanted angle of a thumb that can turn, rad
 };
 
 // Residual rows (n = 2 joints per finger):
 //   2 per finger  (sigma_wanted - sigma) / (pi sqrt(n))                             Eq. 14
 //   3 per finger  sqrt(lambda) (p_wanted - p) / (2 l_finger sqrt(3))                Eq. 14
 //   palm          palm_weight (q_palm - palm_wanted) / pi                           ours
-//   6 per valve of four joints   coupling_weight (q_a - q_b) / pi                   ours
+//   opposition    (q - opposition) / (pi sqrt(n)), if the hand has the joint        ours
+//   pairs of joints on one valve coupling_weight (q_a - q_b) / pi                   ours
 //   11            smoothness (q - q_previous) / pi, if warm-started                 ours, off
 struct MappingOptions {
   double palm_weight = 1;
@@ -35,7 +37,7 @@ struct MappingOptions {
 };
 
 struct MappingResult {
-  Eigen::VectorXd q;                 // 11 angles, within their ranges, rad
+  Eigen::VectorXd q;                 // every joint, within its range, rad
   double cost = 0;                   // S' of Eq. 15 summed over fingers, plus our own rows
   PerFinger<double> tip_error = {};  // m
 };

@@ -65,4 +65,8 @@ PerFinger<FlexionAngles> FlexionOf(const HumanHand& hand, const Eigen::VectorXd&
   return flexion;
 }
 
+double OppositionOf(const HumanHand& hand, const Eigen::VectorXd& q) {
+  return q[hand.joints[kThumb].front()];
+}
+
 }  // namespace springgrasp

@@ -29,5 +29,8 @@ struct FlexionAngles {
   double distal = 0;
 };
 PerFinger<FlexionAngles> FlexionOf(const HumanHand& hand, const Eigen::VectorXd& q);
+// Turn of the thumb's CMC joint about the hand's long axis, rad: 0 beside the index, in the plane
+// of the palm; pi/2 before the palm.
+double OppositionOf(const HumanHand& hand, const Eigen::VectorXd& q);
 
 }  // namespace springgrasp

@@ -1,8 +1,10 @@
 #include "kinematics/robot_hand.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "base/error.h"
+#include "kinematics/hand_layout.h"
 
 namespace springgrasp {
 namespace {
@@ -59,16 +61,20 @@ void AddRows(int node, double centre_y, double half_y, double r,
 RobotHand MakeArmarHand(const KinematicTree& tree, const std::string& side) {
   RobotHand hand;
   hand.name = side;
-  std::vector<std::string> names = {side + "_palm"};
-  for (const std::string_view finger : kFingerNames) {
-    for (const char* part : {"_j0", "_j1"}) {
-      names.push_back(side + "_" + std::string(finger) + part);
-    }
+  const auto& joints = tree.joint_names;
+  const bool variant =
+      std::find(joints.begin(), joints.end(), side + "_thumb_opposition") != joints.end();
+  const HandLayout& layout = variant ? OppositionHand() : DocumentedHand();
+  std::vector<std::string> names;
+  for (const std::string_view joint : layout.joints) {
+    names.push_back(side + "_" + std::string(joint));
   }
+  hand.opposition = layout.opposition;
   hand.tree = Canonical(tree, side, names);
   hand.palm = 0;
   hand.tip_radius = 0.0093;
-  hand.valves = {{0}, {1}, {2}, {3}, {4}, {5}, {6}, {7, 8, 9, 10}};
+  hand.valves.resize(kNumValves);
+  for (int j = 0; j < layout.num_joints(); ++j) hand.valves[layout.valve_of_joint[j]].push_back(j);
   hand.open = hand.tree.lower.cwiseMax(0.0);
 
   std::vector<Pose> X_HB;

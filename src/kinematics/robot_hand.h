@@ -31,7 +31,8 @@ struct RobotHand {
   std::string name;
   KinematicTree tree;  // root: H of the robot; q in the order of joint_names
   PerFinger<Finger> fingers;
-  int palm = -1;                         // joint that moves the four fingers; -1: none
+  int palm = -1;        // joint that moves the four fingers; -1: none
+  int opposition = -1;  // joint that turns the thumb about the hand's long axis; -1: none
   std::vector<std::vector<int>> valves;  // joints driven by each valve (equal torque)
   double tip_radius = 0;                 // m
   // Frame A of straight fingers: x along them, y along their common axes towards the thumb side,
@@ -44,8 +45,8 @@ struct RobotHand {
 
 // The ARMAR-IIIb hand from the tree below its hand body (`hand_r` or `hand_l`; frames
 // <side>_H and <side>_<finger>_tip, side = "hand_r" or "hand_l"). Joint order of the result: palm,
-// then j0, j1 of thumb .. pinkie. Capsules as the MJCF's (documented in models/armar3b/README.md).
-// Throws Error if a joint or frame is missing.
+// then j0, j1 of thumb .. pinkie, then the variant's opposition joint. Capsules as the MJCF's
+// (documented in models/armar3b/README.md). Throws Error if a joint or frame is missing.
 //
 // Thumb angles: the human thumb at full opposition and CMC flexion 0 points 45 degrees forward of
 // the palm's normal, the robot's at J0 = 0 straight along the normal, both flex towards the

@@ -1,7 +1,10 @@
 #include "sim/describe_model.h"
 
+#include <map>
+
 #include "base/error.h"
 #include "sim/model_index.h"
+#include "sim/scene_builder.h"
 
 namespace springgrasp {
 namespace {
@@ -24,20 +27,62 @@ std::string JointKind(int type) {
 }
 
 std::string ActuatorKind(const mjModel& model, int id) {
-  const bool pressure = model.actuator_dyntype[id] != mjDYN_NONE;
-  if (!pressure) return fmt::format("motor, Nm x {:g}", model.actuator_gainprm[mjNGAIN * id]);
-  return fmt::format("valve, bar, {:g} Nm/bar, {:g} s", model.actuator_gainprm[mjNGAIN * id],
-                     model.actuator_dynprm[mjNDYN * id]);
+  const double gain = model.actuator_gainprm[mjNGAIN * id] * model.actuator_gear[6 * id];
+  if (model.actuator_dyntype[id] != mjDYN_NONE) {
+    return fmt::format("valve, bar, {:g} Nm/bar, {:g} s", gain, model.actuator_dynprm[mjNDYN * id]);
+  }
+  if (model.actuator_biastype[id] == mjBIAS_AFFINE)
+    return fmt::format("servo, {:g} per unit", gain);
+  return fmt::format("motor, Nm x {:g}", gain);
+}
+
+// By its own name, its joint's, or its parent's.
+std::string SubsystemOfBody(const mjModel& model, int body) {
+  for (; body > 0; body = model.body_parentid[body]) {
+    std::string subsystem = SubsystemOfJoint(NameOf(model, mjOBJ_BODY, body));
+    if (subsystem.empty() && model.body_jntnum[body] > 0) {
+      subsystem = SubsystemOfJoint(NameOf(model, mjOBJ_JOINT, model.body_jntadr[body]));
+    }
+    if (!subsystem.empty()) return subsystem;
+  }
+  return "";
+}
+
+struct Subsystem {
+  int joints = 0, actuators = 0;
+  double mass = 0;  // kg
+};
+
+// Empty if nothing in the model is named as a part of a robot.
+std::string SubsystemTable(const mjModel& model) {
+  std::map<std::string, Subsystem> parts;
+  for (int j = 0; j < model.njnt; ++j) {
+    ++parts[SubsystemOfJoint(NameOf(model, mjOBJ_JOINT, j))].joints;
+  }
+  for (int a = 0; a < model.nu; ++a) {
+    ++parts[SubsystemOfJoint(NameOf(model, mjOBJ_ACTUATOR, a))].actuators;
+  }
+  for (int b = 1; b < model.nbody; ++b) parts[SubsystemOfBody(model, b)].mass += model.body_mass[b];
+  std::string text;
+  for (const char* name :
+       {"platform", "torso", "head", "right_arm", "right_hand", "left_arm", "left_hand"}) {
+    const Subsystem part = parts[name];
+    if (part.mass == 0) continue;
+    text += fmt::format("  {:<12} {:>2} joints, {:>2} actuators {:>9.4f} kg\n", name, part.joints,
+                        part.actuators, part.mass);
+  }
+  return text.empty() ? text : "\nsubsystems\n" + text;
 }
 
 }  // namespace
 
 std::string DescribeModel(const mjModel& model) {
   std::string text = fmt::format(
-      "{} bodies, {} joints ({} degrees of freedom), {} actuators, {} geoms, {} cameras, "
+      "{} bodies, {} joints ({} degrees of freedom, {} of them actuated), {} geoms, {} cameras, "
       "{:.3f} kg\n",
       model.nbody - 1, model.njnt, model.nv, model.nu, model.ngeom, model.ncam,
       model.body_subtreemass[0]);
+  text += SubsystemTable(model);
   text += "\njoints\n";
   for (int j = 0; j < model.njnt; ++j) {
     text += fmt::format("  {:<26} {:<11} {:<20} on {}\n", NameOf(model, mjOBJ_JOINT, j),

@@ -35,17 +35,26 @@ RobotIo::RobotIo(const mjModel& model, const std::string& side) {
     max_arm_torque[i] = model.actuator_ctrllimited[motor] ? model.actuator_ctrlrange[2 * motor + 1]
                                                           : std::numeric_limits<double>::infinity();
   }
-  for (int i = 0; i < kNumHandJoints; ++i) {
-    FindHinge(model, Name("hand", side, kHandJointNames[i]), hand_qpos_[i], hand_dof_[i],
+  const bool opposition = FindId(model, mjOBJ_JOINT, Name("hand", side, "thumb_opposition")) >= 0;
+  layout_ = opposition ? &OppositionHand() : &DocumentedHand();
+  const int joints = layout_->num_joints();
+  hand_lower.resize(joints);
+  hand_upper.resize(joints);
+  hand_qpos_.resize(joints);
+  hand_dof_.resize(joints);
+  for (int i = 0; i < joints; ++i) {
+    FindHinge(model, Name("hand", side, layout_->joints[i]), hand_qpos_[i], hand_dof_[i],
               hand_lower[i], hand_upper[i]);
   }
   // Activations stand in the order of the actuators that have one: here the valves.
   for (int i = 0; i < kNumValves; ++i) {
-    const int valve = IdOf(model, mjOBJ_ACTUATOR, Name("hand", side, kValveNames[i]));
+    const int valve = IdOf(model, mjOBJ_ACTUATOR, Name("hand", side, layout_->valves[i]));
     ThrowUnless(model.actuator_dyntype[valve] != mjDYN_NONE,
                 "actuator '{}' has no pressure state, expected dynamics such as filter",
                 NameOf(model, mjOBJ_ACTUATOR, valve));
     valve_ctrl_[i] = valve;
+    min_valve_control_[i] = model.actuator_ctrlrange[2 * valve];
+    max_valve_control_[i] = model.actuator_ctrlrange[2 * valve + 1];
     valve_act_[i] = 0;
     for (int a = 0; a < valve; ++a) valve_act_[i] += model.actuator_dyntype[a] != mjDYN_NONE;
   }
@@ -65,7 +74,9 @@ RobotState RobotIo::Read(const Simulation& simulation) const {
     state.arm_qd[i] = data.qvel[arm_dof_[i]];
     state.arm_bias[i] = data.qfrc_bias[arm_dof_[i]];
   }
-  for (int i = 0; i < kNumHandJoints; ++i) {
+  state.hand_q.resize(layout_->num_joints());
+  state.hand_qd.resize(layout_->num_joints());
+  for (int i = 0; i < layout_->num_joints(); ++i) {
     state.hand_q[i] = data.qpos[hand_qpos_[i]];
     state.hand_qd[i] = data.qvel[hand_dof_[i]];
   }
@@ -90,8 +101,8 @@ void RobotIo::Write(const RobotCommand& command, Simulation& simulation) const {
                           std::clamp(command.arm_torque[i], -max_arm_torque[i], max_arm_torque[i]));
   }
   for (int i = 0; i < kNumValves; ++i) {
-    simulation.SetControl(valve_ctrl_[i],
-                          std::clamp(command.valve_pressure[i], 0.0, kMaxPressureBar));
+    simulation.SetControl(valve_ctrl_[i], std::clamp(command.valve_pressure[i],
+                                                     min_valve_control_[i], max_valve_control_[i]));
   }
 }
 
@@ -99,7 +110,7 @@ void RobotIo::Place(const ArmVector& arm_q, const HandVector& hand_q,
                     Simulation& simulation) const {
   mjData& data = simulation.mutable_data();
   for (int i = 0; i < kNumArmJoints; ++i) data.qpos[arm_qpos_[i]] = arm_q[i];
-  for (int i = 0; i < kNumHandJoints; ++i) data.qpos[hand_qpos_[i]] = hand_q[i];
+  for (int i = 0; i < layout_->num_joints(); ++i) data.qpos[hand_qpos_[i]] = hand_q[i];
 }
 
 Pose RobotIo::HandPose(const Simulation& simulation) const {

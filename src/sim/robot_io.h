@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "base/pose.h"
 #include "control/robot_state.h"
@@ -16,6 +17,9 @@ class RobotIo {
   // Throws Error naming the joint, actuator or site that the model lacks.
   explicit RobotIo(const mjModel& model, const std::string& side = "r");
 
+  // The hand with an opposition joint if the model has that joint, else the documented one.
+  const HandLayout& layout() const { return *layout_; }
+
   RobotState Read(const Simulation& simulation) const;
   void Write(const RobotCommand& command, Simulation& simulation) const;
 
@@ -27,13 +31,15 @@ class RobotIo {
   Eigen::Vector3d Fingertip(const Simulation& simulation, int finger) const;
 
   ArmVector arm_lower, arm_upper;     // rad
-  HandVector hand_lower, hand_upper;  // rad
+  HandVector hand_lower, hand_upper;  // rad, in the layout's order
   ArmVector max_arm_torque;           // Nm
 
  private:
+  const HandLayout* layout_;
   std::array<int, kNumArmJoints> arm_qpos_, arm_dof_, arm_ctrl_;
-  std::array<int, kNumHandJoints> hand_qpos_, hand_dof_;
+  std::vector<int> hand_qpos_, hand_dof_;
   std::array<int, kNumValves> valve_ctrl_, valve_act_;
+  ValveVector min_valve_control_, max_valve_control_;  // of the model, bar
   int hand_site_ = -1;
   std::array<int, 5> tip_sites_;
 };

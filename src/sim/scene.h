@@ -10,6 +10,7 @@
 #include "base/pose.h"
 #include "base/random.h"
 #include "base/shape.h"
+#include "sim/pneumatics.h"
 
 namespace springgrasp {
 
@@ -96,7 +97,8 @@ struct ScenePhysics {
 struct Scene {
   std::string source;                         // file, for messages
   std::string robot = "armar3b/armar3b.xml";  // relative to models/, or absolute
-  std::string hand = "documented";            // documented | opposition (not yet)
+  // documented | opposition: then the file <robot>_opposition.xml beside the robot's
+  std::string hand = "documented";
   std::vector<std::string> active = {"right_arm", "right_hand"};
   std::map<std::string, double> start;  // joint -> rad; others 0 (within range)
   std::string torso = "fixed";          // fixed | free
@@ -107,6 +109,7 @@ struct Scene {
   std::vector<SceneCamera> cameras;  // default: front and close
   SceneDemonstrator demonstrator;
   ScenePhysics physics;
+  PneumaticParameters pneumatics;
 };
 
 // Throws Error with file and line.

@@ -35,13 +35,24 @@ void CheckStartNames(const Scene& scene, const mjModel& robot) {
 
 bool IsActive(const Scene& scene, const std::string& joint) {
   const std::string subsystem = SubsystemOfJoint(joint);
-  if (subsystem == "torso") return scene.torso == "free";
-  if (subsystem == "platform") return false;
+  if (subsystem == "torso" && scene.torso == "free") return true;
   return subsystem.empty() || std::count(scene.active.begin(), scene.active.end(), subsystem) > 0;
 }
 
+// The robot's file, or its variant with the opposition joint.
+std::string RobotPath(const Scene& scene) {
+  const std::filesystem::path path(ModelPath(scene.robot));
+  if (scene.hand == "documented") return path;
+  const std::filesystem::path variant =
+      path.parent_path() / (path.stem().string() + "_" + scene.hand + path.extension().string());
+  ThrowUnless(std::filesystem::is_regular_file(variant),
+              "{}: hand is '{}', but there is no model {}", scene.source, scene.hand,
+              variant.string());
+  return variant;
+}
+
 void AddRobot(const Scene& scene, XmlDocument& document) {
-  const std::string path = ModelPath(scene.robot);
+  const std::string path = RobotPath(scene);
   const ModelPtr robot = LoadModelFile(path);
   CheckStartNames(scene, *robot);
   std::map<std::string, double> frozen;
@@ -122,7 +133,7 @@ std::string SubsystemOfJoint(const std::string& joint) {
       {"head_", "head"},         {"eye", "head"},        {"arm_r_", "right_arm"},
       {"hand_r_", "right_hand"}, {"arm_l_", "left_arm"}, {"hand_l_", "left_hand"}};
   for (const auto& [prefix, subsystem] : prefixes) {
-    if (joint.rfind(prefix, 0) == 0) return subsystem;
+    if ((joint + "_").rfind(prefix, 0) == 0) return subsystem;
   }
   return "";
 }
@@ -153,6 +164,7 @@ std::string BuildMjcf(const Scene& scene, const BuildOptions& options) {
 ModelPtr BuildModel(const Scene& scene, const BuildOptions& options) {
   ModelPtr model = LoadModelText(BuildMjcf(scene, options), scene.source);
   ScaleFileObjects(scene, *model);
+  ApplyPneumatics(scene.pneumatics, *model);
   FillStartKey(scene, *model);
   return model;
 }

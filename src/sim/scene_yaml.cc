@@ -194,6 +194,28 @@ void ReadPhysics(YamlReader yaml, ScenePhysics& p) {
   yaml.Finish();
 }
 
+void ReadPneumatics(YamlReader yaml, PneumaticParameters& p) {
+  const auto read = [&](const char* key, std::optional<double>& value, const Bounds& bounds) {
+    if (!yaml.Has(key)) return;
+    value = 0;
+    yaml.Read(key, *value, bounds);
+  };
+  read("fill_time", p.fill_time, {0.005, 2});
+  read("supply", p.supply, {0.1, 20});
+  read("area", p.area, {0.01, 100});
+  read("lever", p.lever, {0.1, 10});
+  read("spring", p.spring, {0.001, 10});
+  read("damping", p.damping, {0, 1});
+  read("friction", p.friction, {0, 1});
+  yaml.Read("leakage", p.leakage, {0, 10});
+  yaml.Read("delay", p.delay, {0, 0.5});
+  yaml.Read("hysteresis", p.hysteresis, {0, 2});
+  yaml.Read("max_rate", p.max_rate, {0, 1000});
+  yaml.Read("pressure_noise", p.pressure_noise, {0, 1});
+  yaml.Read("angle_noise", p.angle_noise, {0, 0.5});
+  yaml.Finish();
+}
+
 // Two lamps, and two overview cameras: one sees robot and table, one the first object.
 void FillDefaultView(Scene& scene) {
   const Eigen::Vector3d top(scene.table.position.x(), scene.table.position.y(), scene.table.height);
@@ -215,14 +237,10 @@ Scene ReadSceneFrom(YamlReader yaml, const std::string& name) {
   Scene scene;
   scene.source = name;
   yaml.Read("robot", scene.robot);
-  yaml.Read("hand", scene.hand);
-  ThrowUnless(scene.hand == "documented",
-              "{}: hand is '{}', expected documented (the variant with an opposition joint is not "
-              "part of the robot model)",
-              yaml.Where("hand"), scene.hand);
+  yaml.Read("hand", scene.hand, {"documented", "opposition"});
   yaml.Read("active", scene.active);
-  const std::set<std::string> subsystems = {"head", "right_arm", "right_hand", "left_arm",
-                                            "left_hand"};
+  const std::set<std::string> subsystems = {"platform",   "torso",    "head",     "right_arm",
+                                            "right_hand", "left_arm", "left_hand"};
   for (const std::string& s : scene.active) {
     ThrowUnless(subsystems.count(s) > 0, "{}: active holds '{}', expected some of {}",
                 yaml.Where("active"), s, fmt::join(subsystems, ", "));
@@ -243,6 +261,7 @@ Scene ReadSceneFrom(YamlReader yaml, const std::string& name) {
   for (YamlReader& child : yaml.Children("cameras")) scene.cameras.push_back(ReadCamera(child));
   ReadDemonstrator(yaml.Child("demonstrator"), name, scene.demonstrator);
   ReadPhysics(yaml.Child("physics"), scene.physics);
+  ReadPneumatics(yaml.Child("pneumatics"), scene.pneumatics);
   yaml.Finish();
   FillDefaultView(scene);
   return scene;

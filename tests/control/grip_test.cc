@@ -8,9 +8,9 @@ namespace {
 // Five planar fingers of one link each, bases 20 mm apart along y; the thumb faces the others.
 KinematicTree ToyHand() {
   KinematicTree tree;
-  for (int j = 0; j < kNumHandJoints; ++j) {
+  for (int j = 0; j < DocumentedHand().num_joints(); ++j) {
     KinematicTree::Node node;
-    node.name = std::string(kHandJointNames[j]);
+    node.name = std::string(DocumentedHand().joints[j]);
     node.joint = j;
     node.axis = Eigen::Vector3d::UnitY();
     if (j > 0 && j % 2 == 0) {
@@ -30,8 +30,8 @@ KinematicTree ToyHand() {
     tip.X_BF.translation() = Eigen::Vector3d(0.05, 0, 0);
     tree.frames.push_back(tip);
   }
-  tree.lower = HandVector::Constant(-1);
-  tree.upper = HandVector::Constant(1);
+  tree.lower = HandVector::Constant(11, -1);
+  tree.upper = HandVector::Constant(11, 1);
   return tree;
 }
 
@@ -40,7 +40,7 @@ TEST(GripTest, FingertipGripDoesNoWorkWhenTheHandTurnsAsAWhole) {
   const KinematicTree tree = ToyHand();
   FingertipGrip grip;
   grip.involved = {true, true, true, false, false};
-  const HandVector q = HandVector::Constant(0.2);
+  const HandVector q = HandVector::Constant(11, 0.2);
   const HandVector torque = FingertipGripTorque(tree, {0, 1, 2, 3, 4}, q, grip);
   EXPECT_GT(torque.cwiseAbs().maxCoeff(), 0.05);
   EXPECT_EQ(torque[7], 0);   // ring
@@ -52,14 +52,14 @@ TEST(GripTest, FingertipGripTorqueIsTheGradientOfTheDistanceBetweenTheOpposedPad
   FingertipGrip grip;
   grip.involved = {true, true, false, false, false};
   grip.force = 2;
-  const HandVector q = HandVector::LinSpaced(-0.2, 0.4);
+  const HandVector q = HandVector::LinSpaced(11, -0.2, 0.4);
   const HandVector torque = FingertipGripTorque(tree, {0, 1, 2, 3, 4}, q, grip);
   const auto distance = [&](const HandVector& at) {
     std::vector<Pose> X;
     ForwardKinematics(tree, at, X);
     return (FramePose(tree, X, 0).translation() - FramePose(tree, X, 1).translation()).norm();
   };
-  for (int j = 0; j < kNumHandJoints; ++j) {
+  for (int j = 0; j < DocumentedHand().num_joints(); ++j) {
     HandVector high = q, low = q;
     high[j] += 1e-6;
     low[j] -= 1e-6;

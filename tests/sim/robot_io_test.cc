@@ -15,8 +15,8 @@ TEST(RobotIoTest, StateIsReadByName) {
   const RobotIo io(sim.model());
   ArmVector arm;
   arm << 0.1, -0.2, 0.3, 0.4, -0.5, 0.6, -0.7;
-  HandVector hand;
-  for (int i = 0; i < kNumHandJoints; ++i) hand[i] = 0.05 * (i + 1);
+  HandVector hand(io.layout().num_joints());
+  for (int i = 0; i < hand.size(); ++i) hand[i] = 0.05 * (i + 1);
   io.Place(arm, hand, sim);
   sim.Forward();
   const RobotState state = io.Read(sim);
@@ -36,7 +36,7 @@ TEST(RobotIoTest, MassMatrixIsThatBlockOfTheWhole) {
   ArmVector arm;
   for (int i = 0; i < kNumArmJoints; ++i)
     arm[i] = Uniform(engine, io.arm_lower[i], io.arm_upper[i]);
-  io.Place(arm, HandVector::Constant(0.4), sim);
+  io.Place(arm, HandVector::Constant(11, 0.4), sim);
   sim.Forward();
   const RobotState state = io.Read(sim);
   const int nv = sim.model().nv;
@@ -62,7 +62,7 @@ TEST(RobotIoTest, BiasTorqueHoldsTheArmStill) {
   ArmVector arm;
   arm << 0.5, 0.2, 0.1, 0.8, 0.3, -0.2, 0.1;
   // Fingers at their lower limits: the springs press them there, so the hand moves as one.
-  io.Place(arm, HandVector::Zero(), sim);
+  io.Place(arm, HandVector::Zero(io.layout().num_joints()), sim);
   sim.Forward();
   for (int k = 0; k < 250; ++k) {
     RobotCommand command;

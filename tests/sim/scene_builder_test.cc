@@ -155,5 +155,49 @@ TEST(SceneBuilderTest, BrokenModelIsAnErrorWithItsName) {
   }
 }
 
+TEST(SceneBuilderTest, AScenesHandVariantIsTheFileBesideTheRobots) {
+  Scene scene = ParseScene("hand: opposition\n", "scene.yaml");
+  const ModelPtr m = BuildModel(scene);
+  EXPECT_GE(FindId(*m, mjOBJ_JOINT, "hand_r_thumb_opposition"), 0);
+  EXPECT_EQ(m->na, 8);
+  scene.robot = TestFile("sim_robot.xml");  // has no such variant
+  try {
+    BuildModel(scene);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("sim_robot_opposition.xml"));
+  }
+}
+
+TEST(SceneBuilderTest, OnlyActiveSubsystemsMoveAndTheRestKeepsItsInertia) {
+  const auto build = [](const std::string& active) {
+    return BuildModel(ParseScene("active: [" + active + "]\n", "scene.yaml"));
+  };
+  const ModelPtr grasp = build("right_arm, right_hand");
+  EXPECT_EQ(grasp->nv, 7 + 11);
+  EXPECT_EQ(grasp->nu, 7 + 8);
+  EXPECT_EQ(build("right_arm, right_hand, left_arm, left_hand")->nv, 2 * 18);
+  EXPECT_EQ(build("head")->nv, 7);
+  EXPECT_EQ(build("torso")->nv, 3);
+  const ModelPtr whole = build("platform, torso, head, right_arm, right_hand, left_arm, left_hand");
+  EXPECT_EQ(whole->nv, 49);
+  EXPECT_EQ(whole->nu, 43);
+  EXPECT_NEAR(whole->body_subtreemass[IdOf(*whole, mjOBJ_BODY, "armar3b")],
+              grasp->body_subtreemass[IdOf(*grasp, mjOBJ_BODY, "armar3b")], 1e-9);
+  // A torso that moves alone carries what is fixed on it with its whole inertia.
+  const ModelPtr torso = build("torso");
+  const DataPtr d = MakeData(*torso), all = MakeData(*whole);
+  mj_resetDataKeyframe(torso.get(), d.get(), 0);
+  mj_resetDataKeyframe(whole.get(), all.get(), 0);
+  mj_forward(torso.get(), d.get());
+  mj_forward(whole.get(), all.get());
+  const auto inertia = [](const mjModel& m, const mjData& data) {
+    const int dof = m.jnt_dofadr[IdOf(m, mjOBJ_JOINT, "torso_yaw")];
+    return data.qM[m.dof_Madr[dof]];
+  };
+  // The joints' own armatures below the torso are no part of it.
+  EXPECT_NEAR(inertia(*torso, *d), inertia(*whole, *all), 1e-6);
+}
+
 }  // namespace
 }  // namespace springgrasp

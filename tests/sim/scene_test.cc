@@ -59,7 +59,7 @@ TEST(SceneTest, ErrorsNameFileLineAndWhatIsValid) {
   EXPECT_THAT(MessageOf("objects:\n  - shape: ball:0.04\n    pose: [0, 0.5]\n"),
               AllOf(HasSubstr("scene.yaml:2"), HasSubstr("sphere:D")));
   EXPECT_THAT(MessageOf("objects:\n  - pose: [0, 0.5]\n"), HasSubstr("either a shape or a model"));
-  EXPECT_THAT(MessageOf("hand: opposition\n"),
+  EXPECT_THAT(MessageOf("hand: opposed\n"),
               AllOf(HasSubstr("scene.yaml:1"), HasSubstr("documented")));
   EXPECT_THAT(MessageOf("active: [right_leg]\n"),
               AllOf(HasSubstr("scene.yaml:1"), HasSubstr("right_arm")));
