@@ -31,8 +31,8 @@ BOTTLE_PROFILE = [
     + [(32.5 * math.sqrt(1 - (i / 11)**2), 25 + 60 * i / 11) for i in range(1, 11)] + [(13.5, 80)],
     [(13.5, 80), (13.5, 86)], [(13.5, 86), (16.5, 86), (16.5, 88), (13.5, 88)], [(13.5, 88), (13.5, 92), (0, 92)],
 ]
-APPLE_PROFILE = [[(0, -26), (3, -26.5), (7, -30), (11, -33.2), (14, -34), (18, -33), (23, -29.8), (28, -25), (32, -18.5),
-                  (35.5, -10), (37.6, -1), (38, 5), (37.3, 12), (35, 19.5), (31, 26), (26, 31), (21, 33.6), (17, 34),
+APPLE_PROFILE = [[(0, -26), (3, -26.5), (7, -30), (11, -33.2), (14, -34), (17.5, -33), (21.5, -29.8), (25.5, -25), (29.5, -18.5),
+                  (34.3, -9.5), (37.6, -1), (38, 5), (37.3, 12), (35, 19.5), (31, 26), (26, 31), (21, 33.6), (17, 34),
                   (12, 32.4), (7, 27.5), (3, 22.5), (0, 21)]]
 EGG_LENGTH, EGG_WIDTH, EGG_TAPER = 57.0, 43.5, 0.13
 
@@ -104,6 +104,25 @@ def plate(outline, thickness, hole=None):
             corners = (low[k], low[m], high[m], high[k])
             mesh.quad(*(corners[::-1] if inside else corners))
     return mesh
+
+
+def sleeve(radius, low, high):
+    """Profile of a band around an upright cylinder; thick, since thin meshes shade themselves."""
+    inner = radius - 3.6
+    return [[(inner, low), (radius, low)], [(radius, low), (radius, high)], [(radius, high), (inner, high)],
+            [(inner, high), (inner, low)]]
+
+
+def rounded(corners, parts=5):
+    """Points of the Catmull-Rom curve through the corners."""
+    padded = [corners[0], *corners, corners[-1]]
+    points = []
+    for a, b, c, d in zip(padded, padded[1:], padded[2:], padded[3:]):
+        for k in range(parts):
+            t = k / parts
+            points.append(tuple(0.5 * (2 * b[i] + (c[i] - a[i]) * t + (2 * a[i] - 5 * b[i] + 4 * c[i] - d[i]) * t**2
+                                       + (3 * b[i] - a[i] - 3 * c[i] + d[i]) * t**3) for i in range(2)))
+    return [*points, corners[-1]]
 
 
 def rounded_rectangle(x, y, radius):
@@ -281,14 +300,13 @@ def make_mug():
     add(asset, "material", name="glaze", rgba=(0.13, 0.42, 0.52, 1), specular=0.6, shininess=0.7)
     add(asset, "material", name="band", rgba=(0.95, 0.93, 0.87, 1), specular=0.5, shininess=0.6)
     add(body, "geom", class_="visual", type="mesh", mesh="mug", material="glaze")
-    bands = lathe([[(41.15, 22), (41.15, 28)], [(41.15, 28), (41, 28), (41, 22), (41.15, 22)],
-                   [(41.15, 33), (41.15, 36)], [(41.15, 36), (41, 36), (41, 33), (41.15, 33)]])
-    write_mesh_asset(asset, bands, "mug_bands")
-    add(body, "geom", class_="visual", type="mesh", mesh="mug_bands", material="band")
-    rods = list(zip(MUG_HANDLE, MUG_HANDLE[1:]))
-    for (x0, z0), (x1, z1) in rods:
+    write_mesh_asset(asset, lathe(sleeve(41.4, 24, 35)), "mug_band")
+    add(body, "geom", class_="visual", type="mesh", mesh="mug_band", material="band")
+    curve = rounded(MUG_HANDLE)
+    for (x0, z0), (x1, z1) in zip(curve, curve[1:]):
         add(body, "geom", class_="visual", type="capsule", fromto=metres(x0, 0, z0, x1, 0, z1),
             size=MUG_HANDLE_RADIUS / 1000, material="glaze")
+    rods = list(zip(MUG_HANDLE, MUG_HANDLE[1:]))
     low, high = -MUG_HALF_HEIGHT, -MUG_HALF_HEIGHT + 6
     remark(body, "The foot alone touches the table.")
     add(body, "geom", class_="collision", type="cylinder", pos=metres(0, 0, (low + high) / 2),
@@ -311,6 +329,8 @@ def make_mug():
 
 def main():
     lathe(BOTTLE_PROFILE).write("bottle")
+    lathe(sleeve(33.0, -26, 22)).write("bottle_label")
+    lathe(sleeve(33.4, -4, 8)).write("bottle_stripe")
     plate(rounded_rectangle(42.8, 26.99, 3.18), 0.76).write("card")
     plate(circle(-16, 12.5), 2.0, circle(-21.5, 3.8)).write("key_bow")
     make_ball()
