@@ -18,7 +18,7 @@ int ObjectIndex(const Scene& scene, const std::string& name) {
 
 std::optional<RingSeat> SeatOnRing(const SceneObject& object) {
   RingSeat seat;
-  if (object.shape) {
+  if (object.model.empty() && object.shape) {
     if (object.shape->kind != Shape::Kind::kSphere) return std::nullopt;
     seat.ring = RingForSphere(object.shape->size.x());
     seat.height = SphereHeightOnRing(seat.ring, object.shape->size.x() / 2);
@@ -45,8 +45,8 @@ Pose ObjectStartPose(const Scene& scene, int object) {
   X_WO.linear() =
       Eigen::AngleAxisd(o.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix() * X_WO.linear();
   if (!o.resting) return X_WO;
-  double z = o.shape ? o.shape->size.z() / 2
-                     : ReachOf(o.parts, -X_WO.linear().transpose() * Eigen::Vector3d::UnitZ());
+  double z = ReachOf(o.parts, -X_WO.linear().transpose() * Eigen::Vector3d::UnitZ());
+  if (o.model.empty() && o.shape) z = o.shape->size.z() / 2;
   if (const auto seat = SeatOnRing(o); seat && o.on_ring) z = o.ring_height + seat->height;
   X_WO.translation().z() = scene.table.height + z;
   return X_WO;

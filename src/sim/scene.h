@@ -39,7 +39,9 @@ struct SceneBelief {
 struct SceneObject {
   std::string name = "object";
   std::optional<Shape> shape;  // shape: "cylinder:0.05x0.16" ...
-  std::string model;           // ... or an MJCF (.xml) or mesh (.obj, .stl) file
+  // ... or an MJCF (.xml) or mesh (.obj, .stl) file. With both, the file is what there is, and the
+  // shape, about the same origin, what the robot takes it for.
+  std::string model;
   // Of an .xml file that the scene does not overrule: as the file says.
   double mass = 0.1;              // kg
   double friction = 0.9;          // sliding coefficient, of all its contacts

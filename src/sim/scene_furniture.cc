@@ -255,7 +255,7 @@ void AddObject(const Scene& scene, int object, XmlDocument& document) {
   SetPose(body, X_WO);
   Add(body, "freejoint", o.name + "_free");
   XmlElement* geom = Add(body, "geom", o.name);
-  if (o.shape) {
+  if (o.model.empty() && o.shape) {
     SetShape(geom, *o.shape);
   } else {
     XmlElement* mesh = Add(ChildOf(root, "asset"), "mesh", o.name);

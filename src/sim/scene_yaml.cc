@@ -96,8 +96,8 @@ SceneObject ReadObject(YamlReader& yaml, const std::string& scene) {
   CheckName(o.name, yaml.Where("name"));
   o.shape = ReadShape(yaml, "shape");
   yaml.Read("model", o.model);
-  ThrowUnless(o.shape.has_value() != !o.model.empty(),
-              "{}: object '{}' needs either a shape or a model (a file), not both",
+  ThrowUnless(o.shape || !o.model.empty(),
+              "{}: object '{}' needs either a shape or a model (a file), or both",
               yaml.Where("name"), o.name);
   if (!o.model.empty()) o.model = ResolveFile(o.model, scene, yaml.Where("model"), "model");
   if (o.shape) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "sim/model_index.h"
 #include "sim/ring.h"
 #include "sim/sim_fixture.h"
 
@@ -105,6 +106,15 @@ TEST(SceneTest, TheScenesMassAndFrictionOverruleTheFile) {
   EXPECT_FALSE(s.objects[0].friction_of_file);
   EXPECT_EQ(BelieveObject(s, 0).mass, 0.3);
   EXPECT_EQ(BelieveObject(s, 0).friction, 0.55);
+}
+
+TEST(SceneTest, AShapeBesideAFileIsWhatTheRobotTakesItFor) {
+  const Scene s = SceneOf("model: sim_tool.xml, shape: 'box:0.06x0.02x0.03', pose: [0.3, 0.6]");
+  EXPECT_EQ(BelieveObject(s, 0).shape->size.z(), 0.03);
+  EXPECT_NEAR(ObjectStartPose(s, 0).translation().z() - s.table.height, 0.01, 1e-9);  // the file's
+  BuildOptions options;
+  options.with_robot = false;
+  EXPECT_GE(FindId(*BuildModel(s, options), mjOBJ_GEOM, "thing_rod"), 0);
 }
 
 TEST(SceneTest, MeshesHaveTheDefaultMassAndFriction) {
