@@ -10,7 +10,7 @@ import math
 import pathlib
 import xml.etree.ElementTree as ET
 
-from mjcf_tools import add, remark, text, write
+from mjcf_tools import add, cross, normalized, remark, text, write
 
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "models" / "objects"
 SLICES = 48
@@ -27,12 +27,13 @@ MUG_HANDLE = [(40, 27), (55, 29), (65.5, 18), (66, -6), (57, -21), (40, -26)]  #
 MUG_HANDLE_RADIUS = 5
 BOTTLE_PROFILE = [
     [(0, -101), (12, -102.5), (20, -104.9)], [(20, -104.9), (27, -104.9), (31, -103), (32.5, -99)],
-    [(32.5, -99)] + [(32.5 - 0.8 * (i % 2), -96 + 5 * i) for i in range(13)] + [(32.5, -35), (32.5, 25)]
-    + [(32.5 * math.sqrt(1 - (i / 11)**2), 25 + 60 * i / 11) for i in range(1, 11)] + [(13.5, 80)],
+    *([(32.5 - 0.8 * (i % 2), -99 + 5 * i), (31.7 + 0.8 * (i % 2), -94 + 5 * i)] for i in range(14)),
+    [(32.5, -29), (32.5, 25)] + [(32.5 * math.sqrt(1 - (i / 11)**2), 25 + 60 * i / 11) for i in range(1, 11)]
+    + [(13.5, 80)],
     [(13.5, 80), (13.5, 86)], [(13.5, 86), (16.5, 86), (16.5, 88), (13.5, 88)], [(13.5, 88), (13.5, 92), (0, 92)],
 ]
-APPLE_PROFILE = [[(0, -26), (3, -26.5), (7, -30), (11, -33.2), (14, -34), (17.5, -33), (21.5, -29.8), (25.5, -25), (29.5, -18.5),
-                  (34.3, -9.5), (37.6, -1), (38, 5), (37.3, 12), (35, 19.5), (31, 26), (26, 31), (21, 33.6), (17, 34),
+APPLE_PROFILE = [[(0, -26), (3, -26.5), (8, -30), (12, -33), (16, -34), (19.5, -33), (23.5, -29.8), (27.5, -25),
+                  (31.2, -18), (35.2, -9), (37.6, -1), (38, 5), (37.3, 12), (35, 19.5), (31, 26), (26, 31), (21, 33.6), (17, 34),
                   (12, 32.4), (7, 27.5), (3, 22.5), (0, 21)]]
 EGG_LENGTH, EGG_WIDTH, EGG_TAPER = 57.0, 43.5, 0.13
 
@@ -58,10 +59,21 @@ class Mesh:
     def quad(self, a, b, c, d):
         self.faces += [(a, b, c), (a, c, d)]
 
+    def normals(self):
+        """Of the vertices: the mean of their faces, by area."""
+        sums = [[0.0] * 3 for _ in self.vertices]
+        for face in self.faces:
+            a, b, c = (self.vertices[i - 1] for i in face)
+            n = cross([b[k] - a[k] for k in range(3)], [c[k] - a[k] for k in range(3)])
+            for i in face:
+                sums[i - 1] = [s + x for s, x in zip(sums[i - 1], n)]
+        return [normalized(s) if any(s) else (0, 0, 1) for s in sums]
+
     def write(self, name):
         lines = ["# Written by scripts/make_objects.py; metres."]
         lines += ["v " + text([0.001 * x for x in v], 6) for v in self.vertices]
-        lines += ["f " + " ".join(map(str, f)) for f in self.faces]
+        lines += ["vn " + text(n, 4) for n in self.normals()]
+        lines += ["f " + " ".join(f"{i}//{i}" for i in f) for f in self.faces]
         (FOLDER / "meshes" / f"{name}.obj").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
@@ -188,6 +200,7 @@ def begin(name, friction, condim, words):
     root = ET.Element("mujoco", model=name)
     remark(root, f"Written by scripts/make_objects.py. {words} Numbers: README.md.")
     add(root, "compiler", angle="radian", autolimits="true")
+    add(add(root, "visual"), "headlight", ambient=(0.4, 0.4, 0.4), diffuse=(0.6, 0.6, 0.6))
     main = add(root, "default")
     add(add(main, "default", class_="visual"), "geom", group=2, contype=0, conaffinity=0, mass=0)
     add(add(main, "default", class_="collision"), "geom", group=3, condim=condim, friction=friction, **CONTACT,
@@ -274,14 +287,15 @@ def make_apple():
     add(asset, "material", name="leaf", rgba=(0.25, 0.50, 0.14, 1), specular=0.1, shininess=0.2)
     volume = inertial(body, APPLE_PROFILE[0], mass)
     add(body, "geom", class_="visual", type="mesh", mesh="apple", material="skin")
-    add(body, "geom", class_="visual", type="ellipsoid", pos=metres(0, 0, 22.5), size=metres(9, 9, 3.5), material="blush")
+    add(body, "geom", class_="visual", type="ellipsoid", pos=metres(0, 0, 22.5), size=metres(9, 9, 3.5),
+        material="blush")
     add(body, "geom", class_="visual", type="capsule", fromto=metres(0, 0, 21, 4, 1, 41), size=0.0014, material="stem")
     add(body, "geom", class_="visual", type="ellipsoid", pos=metres(12, 5, 38.5), size=metres(10, 5, 0.8),
         quat=(0.94, -0.05, -0.22, 0.2), material="leaf")
-    parts = [("ellipsoid", (0, 0, 2), (38, 38, 31))]
+    parts = [("ellipsoid", (0, 0, 2), (38, 38, 32))]
     for k in range(5):
         a = 2 * math.pi * k / 5
-        parts.append(("sphere", (14 * math.cos(a), 14 * math.sin(a), -22), (12,)))
+        parts.append(("sphere", (16 * math.cos(a), 16 * math.sin(a), -22), (12,)))
     for k in range(6):
         a = 2 * math.pi * k / 6
         parts.append(("sphere", (17 * math.cos(a), 17 * math.sin(a), 19.5), (14.5,)))
