@@ -149,8 +149,8 @@ std::vector<Vector> Fixed(const std::vector<Eigen::VectorXd>& path) {
 
 PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanRequest& request) {
   ThrowUnless(request.object.shape.has_value(),
-              "the object of the scene has no primitive shape; grasping needs sphere, cylinder or "
-              "box");
+              "the object of the scene has no primitive shape; grasping needs `shape` (sphere, "
+              "cylinder or box), also beside a `model`");
   PlanResult result;
   const double dt = request.dt;
   GenerateOptions generate;

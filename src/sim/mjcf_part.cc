@@ -220,6 +220,21 @@ std::unique_ptr<XmlDocument> ReadMjcfPart(const std::string& path, const std::st
   return part;
 }
 
+void PrefixNames(XmlDocument& part, const std::string& prefix) {
+  const std::string defaults = prefix + "_defaults";  // has been prefixed by ReadMjcfPart
+  ForEach(part.FirstChildElement("mujoco"), [&](XmlElement* e) {
+    if (Is(e, "mujoco") || Is(e, "compiler") || Is(e, "option")) return;
+    for (const char* key :
+         {"name",   "class",   "childclass", "material", "mesh",   "texture",
+          "hfield", "target",  "joint",      "joint1",   "joint2", "jointinparent",
+          "tendon", "tendon1", "tendon2",    "actuator", "body",   "body1",
+          "body2",  "geom",    "geom1",      "geom2",    "site",   "objname"}) {
+      const std::string value = Attribute(e, key);
+      if (!value.empty() && value != defaults) e->SetAttribute(key, (prefix + "_" + value).c_str());
+    }
+  });
+}
+
 void FreezeJoints(XmlDocument& part, const mjModel& model,
                   const std::map<std::string, double>& positions) {
   if (positions.empty()) return;

@@ -18,6 +18,10 @@ using XmlElement = tinyxml2::XMLElement;
 // elements without a class of their own belong to. Throws Error.
 std::unique_ptr<XmlDocument> ReadMjcfPart(const std::string& path, const std::string& prefix);
 
+// Puts `prefix`_ before every name in the part and before every reference to one, so that parts
+// with the same names, or one part twice, can be merged into one scene.
+void PrefixNames(XmlDocument& part, const std::string& prefix);
+
 // Removes joints and turns their bodies to where the joints stood. Actuators, sensors, tendons and
 // equalities on them go too. `model` is the compiled whole file, from which axes and anchors are
 // taken. Pairs of neighbours that MuJoCo would no longer exempt from collision, because one of

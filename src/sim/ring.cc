@@ -1,5 +1,6 @@
 #include "sim/ring.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace springgrasp {
@@ -11,12 +12,11 @@ Ring RingForSphere(double diameter) {
   return ring;
 }
 
-double SphereHeightOnRing(double diameter) {
-  const Ring ring = RingForSphere(diameter);
+double SphereHeightOnRing(const Ring& ring, double radius) {
   // Every capsule touches at its middle, which is nearest to the ring's axis.
   const double a = ring.radius * std::cos(M_PI / ring.segments);
-  const double reach = diameter / 2 + ring.tube;
-  return ring.tube + std::sqrt(reach * reach - a * a);
+  const double reach = radius + ring.tube;
+  return ring.tube + std::sqrt(std::max(0.0, reach * reach - a * a));
 }
 
 }  // namespace springgrasp

@@ -13,7 +13,7 @@ struct Ring {
 // equator.
 Ring RingForSphere(double diameter);
 
-// Height of the sphere's centre above the ring's bottom when it touches the capsules.
-double SphereHeightOnRing(double diameter);
+// Height of a sphere's centre above the ring's bottom when it touches the capsules.
+double SphereHeightOnRing(const Ring& ring, double radius);
 
 }  // namespace springgrasp

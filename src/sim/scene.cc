@@ -1,9 +1,9 @@
 #include "sim/scene.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
-#include "sim/ring.h"
 
 namespace springgrasp {
 
@@ -16,14 +16,38 @@ int ObjectIndex(const Scene& scene, const std::string& name) {
   Fail("{}: no object named '{}', expected one of {}", scene.source, name, fmt::join(names, ", "));
 }
 
+std::optional<RingSeat> SeatOnRing(const SceneObject& object) {
+  RingSeat seat;
+  if (object.model.empty() && object.shape) {
+    if (object.shape->kind != Shape::Kind::kSphere) return std::nullopt;
+    seat.ring = RingForSphere(object.shape->size.x());
+    seat.height = SphereHeightOnRing(seat.ring, object.shape->size.x() / 2);
+    return seat;
+  }
+  double widest = 0;
+  for (const ObjectPart& part : object.parts) {
+    const bool on_axis = part.X_OP.translation().head<2>().norm() < 1e-6;
+    if (part.kind != ObjectPart::Kind::kSphere || !on_axis) return std::nullopt;
+    widest = std::max(widest, 2 * part.size.x());
+  }
+  if (object.parts.empty()) return std::nullopt;
+  seat.ring = RingForSphere(widest);
+  for (const ObjectPart& part : object.parts) {
+    const double height = SphereHeightOnRing(seat.ring, part.size.x());
+    seat.height = std::max(seat.height, height - part.X_OP.translation().z());
+  }
+  return seat;
+}
+
 Pose ObjectStartPose(const Scene& scene, int object) {
   const SceneObject& o = scene.objects.at(object);
   Pose X_WO = o.X_WO;
   X_WO.linear() =
       Eigen::AngleAxisd(o.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix() * X_WO.linear();
   if (!o.resting) return X_WO;
-  double z = o.shape ? o.shape->size.z() / 2 : 0;
-  if (o.on_ring && o.shape) z = o.ring_height + SphereHeightOnRing(o.shape->size.x());
+  double z = ReachOf(o.parts, -X_WO.linear().transpose() * Eigen::Vector3d::UnitZ());
+  if (o.model.empty() && o.shape) z = o.shape->size.z() / 2;
+  if (const auto seat = SeatOnRing(o); seat && o.on_ring) z = o.ring_height + seat->height;
   X_WO.translation().z() = scene.table.height + z;
   return X_WO;
 }

@@ -10,7 +10,9 @@
 #include "base/pose.h"
 #include "base/random.h"
 #include "base/shape.h"
+#include "sim/object_file.h"
 #include "sim/pneumatics.h"
+#include "sim/ring.h"
 
 namespace springgrasp {
 
@@ -37,15 +39,20 @@ struct SceneBelief {
 
 struct SceneObject {
   std::string name = "object";
-  std::optional<Shape> shape;    // shape: "cylinder:0.05x0.16" ...
-  std::string model;             // ... or an MJCF (.xml) or mesh (.obj, .stl) file
-  double mass = 0.1;             // kg
-  double friction = 0.9;         // sliding coefficient, of all its contacts
-  Pose X_WO = Pose::Identity();  // YAML pose: [x, y], [x, y, z] or x y z qw qx qy qz
-  bool resting = true;           // z was not given: stands on the table or its ring
-  double yaw = 0;                // rad, beside a pose of two or three numbers
+  std::optional<Shape> shape;  // shape: "cylinder:0.05x0.16" ...
+  // ... or an MJCF (.xml) or mesh (.obj, .stl) file. With both, the file is what there is, and the
+  // shape, about the same origin, what the robot takes it for.
+  std::string model;
+  // Of an .xml file that the scene does not overrule: as the file says.
+  double mass = 0.1;              // kg
+  double friction = 0.9;          // sliding coefficient, of all its contacts
+  bool friction_of_file = false;  // every part of the file keeps its own, `friction` is the least
+  std::vector<ObjectPart> parts;  // where the file is solid
+  Pose X_WO = Pose::Identity();   // YAML pose: [x, y], [x, y, z] or x y z qw qx qy qz
+  bool resting = true;            // z was not given: stands on the table or its ring
+  double yaw = 0;                 // rad, beside a pose of two or three numbers
   ScenePoseNoise pose_noise;
-  bool on_ring = false;                    // spheres: lie on a small fixed ring
+  bool on_ring = false;                    // round ones (SeatOnRing): lie on a small fixed ring
   double ring_height = 0;                  // m, from the table to the ring's bottom (a thin stand)
   Eigen::Vector3d colour{0.8, 0.25, 0.2};  // red, green, blue, 0..1
   SceneBelief believed;
@@ -118,6 +125,14 @@ Scene ParseScene(const std::string& yaml_text, const std::string& name);
 
 // Index of the object of that name, or Error listing the names.
 int ObjectIndex(const Scene& scene, const std::string& name);
+
+// The ring that fits an object, and the height of the object's origin above the ring's bottom.
+// Absent if it is neither a sphere nor a file whose parts are spheres on the z axis.
+struct RingSeat {
+  Ring ring;
+  double height = 0;  // m
+};
+std::optional<RingSeat> SeatOnRing(const SceneObject& object);
 
 // True pose of an object at the start: z and yaw resolved (on the table, on its ring).
 Pose ObjectStartPose(const Scene& scene, int object);

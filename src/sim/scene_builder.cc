@@ -77,8 +77,9 @@ void AddDemonstrator(const BuildOptions& options, XmlDocument& document) {
   MergeMjcfPart(*part, document);
 }
 
-// Masses of file objects follow the scene.
-void ScaleFileObjects(const Scene& scene, mjModel& model) {
+// Masses of file objects follow the scene, and friction where it overrules the file. What the
+// object says of contact holds in all its contacts (priority).
+void FitFileObjects(const Scene& scene, mjModel& model) {
   bool changed = false;
   for (const SceneObject& object : scene.objects) {
     if (object.model.empty()) continue;
@@ -89,6 +90,11 @@ void ScaleFileObjects(const Scene& scene, mjModel& model) {
       if (model.body_rootid[b] != body) continue;
       model.body_mass[b] *= factor;
       for (int k = 0; k < 3; ++k) model.body_inertia[3 * b + k] *= factor;
+    }
+    for (int g = 0; g < model.ngeom; ++g) {
+      if (model.body_rootid[model.geom_bodyid[g]] != body) continue;
+      model.geom_priority[g] = std::max(model.geom_priority[g], 1);
+      if (!object.friction_of_file) model.geom_friction[3 * g] = object.friction;
     }
     changed = true;
   }
@@ -163,7 +169,7 @@ std::string BuildMjcf(const Scene& scene, const BuildOptions& options) {
 
 ModelPtr BuildModel(const Scene& scene, const BuildOptions& options) {
   ModelPtr model = LoadModelText(BuildMjcf(scene, options), scene.source);
-  ScaleFileObjects(scene, *model);
+  FitFileObjects(scene, *model);
   ApplyPneumatics(scene.pneumatics, *model);
   FillStartKey(scene, *model);
   return model;

@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "sim/ring.h"
 
 namespace springgrasp {
 namespace {
@@ -66,23 +65,22 @@ void SetContact(XmlElement* geom, double friction, const ScenePhysics& physics, 
   Set(geom, "solimp", Text(physics.solimp));
 }
 
-// Body of an MJCF object file: renamed, freed, with the scene's friction.
-void AddFileObject(const Scene& scene, const SceneObject& object, const Pose& X_WO,
-                   XmlDocument& document) {
+// Body of an MJCF object file: renamed and freed. All its names begin with the object's, so that
+// several objects may come from one file.
+void AddFileObject(const SceneObject& object, const Pose& X_WO, XmlDocument& document) {
   const std::unique_ptr<XmlDocument> part = ReadMjcfPart(object.model, object.name);
   XmlElement* world = ChildOf(part->FirstChildElement("mujoco"), "worldbody");
   XmlElement* body = world->FirstChildElement("body");
   ThrowUnless(body != nullptr && body->NextSiblingElement("body") == nullptr,
               "{}: expected exactly one body in the world of an object file", object.model);
+  PrefixNames(*part, object.name);
   Set(body, "name", object.name);
+  for (const char* key : {"axisangle", "xyaxes", "zaxis", "euler"}) body->DeleteAttribute(key);
   SetPose(body, X_WO);
   for (const char* joint : {"joint", "freejoint"}) {
     while (XmlElement* j = body->FirstChildElement(joint)) body->DeleteChild(j);
   }
   Add(body, "freejoint", object.name + "_free");
-  for (XmlElement* g = body->FirstChildElement("geom"); g; g = g->NextSiblingElement("geom")) {
-    SetContact(g, object.friction, scene.physics, 1);
-  }
   MergeMjcfPart(*part, document);
 }
 
@@ -215,10 +213,11 @@ void AddTable(const Scene& scene, XmlElement* root) {
 
 void AddRing(const Scene& scene, int object, XmlElement* root) {
   const SceneObject& o = scene.objects.at(object);
-  if (!o.on_ring || !o.shape) return;
-  const Ring ring = RingForSphere(o.shape->size.x());
+  const std::optional<RingSeat> seat = SeatOnRing(o);
+  if (!o.on_ring || !seat) return;
+  const Ring& ring = seat->ring;
   const Pose X_WO = ObjectStartPose(scene, object);
-  const double bottom = X_WO.translation().z() - SphereHeightOnRing(o.shape->size.x());
+  const double bottom = X_WO.translation().z() - seat->height;
   XmlElement* body = Add(ChildOf(root, "worldbody"), "body", o.name + "_ring");
   SetPose(body, YawPose(X_WO.translation().x(), X_WO.translation().y(), bottom, 0));
   const auto corner = [&](int i) {
@@ -249,14 +248,14 @@ void AddObject(const Scene& scene, int object, XmlDocument& document) {
   const Pose X_WO = ObjectStartPose(scene, object);
   XmlElement* root = document.FirstChildElement("mujoco");
   if (std::filesystem::path(o.model).extension() == ".xml") {
-    AddFileObject(scene, o, X_WO, document);
+    AddFileObject(o, X_WO, document);
     return;
   }
   XmlElement* body = Add(ChildOf(root, "worldbody"), "body", o.name);
   SetPose(body, X_WO);
   Add(body, "freejoint", o.name + "_free");
   XmlElement* geom = Add(body, "geom", o.name);
-  if (o.shape) {
+  if (o.model.empty() && o.shape) {
     SetShape(geom, *o.shape);
   } else {
     XmlElement* mesh = Add(ChildOf(root, "asset"), "mesh", o.name);

@@ -76,14 +76,28 @@ void ReadObjectPose(YamlReader& yaml, SceneObject& object) {
   yaml.Read("yaw", object.yaw, kAngle);
 }
 
+// Mass and friction of an MJCF are the file's; a mesh has neither.
+void ReadFacts(SceneObject& object, const std::string& where) {
+  try {
+    const ObjectFile file = ReadObjectFile(object.model);
+    object.parts = file.parts;
+    if (fs::path(object.model).extension() != ".xml") return;
+    object.mass = file.mass;
+    object.friction = file.friction;
+    object.friction_of_file = true;
+  } catch (const Error& e) {
+    Fail("{}: {}", where, e.what());
+  }
+}
+
 SceneObject ReadObject(YamlReader& yaml, const std::string& scene) {
   SceneObject o;
   yaml.Read("name", o.name);
   CheckName(o.name, yaml.Where("name"));
   o.shape = ReadShape(yaml, "shape");
   yaml.Read("model", o.model);
-  ThrowUnless(o.shape.has_value() != !o.model.empty(),
-              "{}: object '{}' needs either a shape or a model (a file), not both",
+  ThrowUnless(o.shape || !o.model.empty(),
+              "{}: object '{}' needs either a shape or a model (a file), or both",
               yaml.Where("name"), o.name);
   if (!o.model.empty()) o.model = ResolveFile(o.model, scene, yaml.Where("model"), "model");
   if (o.shape) {
@@ -91,8 +105,10 @@ SceneObject ReadObject(YamlReader& yaml, const std::string& scene) {
                 "{}: extents of {} must lie between 0.001 and 2 m", yaml.Where("shape"),
                 FormatShape(*o.shape));
   }
+  if (!o.model.empty()) ReadFacts(o, yaml.Where("model"));
   yaml.Read("mass", o.mass, {1e-4, 50});
   yaml.Read("friction", o.friction, {0.01, 5});
+  o.friction_of_file = o.friction_of_file && !yaml.Has("friction");
   ReadObjectPose(yaml, o);
   YamlReader noise = yaml.Child("pose_noise");
   noise.Read("x", o.pose_noise.x, kFraction);
@@ -100,8 +116,9 @@ SceneObject ReadObject(YamlReader& yaml, const std::string& scene) {
   noise.Read("yaw", o.pose_noise.yaw, {0, 3.1416});
   noise.Finish();
   yaml.Read("on_ring", o.on_ring);
-  ThrowUnless(!o.on_ring || (o.shape && o.shape->kind == Shape::Kind::kSphere),
-              "{}: on_ring is for spheres only", yaml.Where("on_ring"));
+  ThrowUnless(!o.on_ring || SeatOnRing(o),
+              "{}: on_ring is for spheres, and for files whose parts are spheres on the z axis",
+              yaml.Where("on_ring"));
   yaml.Read("ring_height", o.ring_height, {0, 0.5});
   yaml.Read("colour", o.colour, kFraction);
   YamlReader believed = yaml.Child("believed");

@@ -133,6 +133,70 @@ objects:
   }
 }
 
+// Two tools from one file, the second with mass and friction of the scene.
+Scene TwoTools() {
+  return ParseScene(R"(
+objects:
+  - {name: a, model: sim_tool.xml, pose: [0.3, 0.55]}
+  - {name: b, model: sim_tool.xml, pose: [0.3, 0.65], mass: 0.16, friction: 0.5}
+)",
+                    TestFile("tools.yaml"));
+}
+
+TEST(SceneBuilderTest, FileObjectsKeepTheirOwnContactSettings) {
+  BuildOptions options;
+  options.with_robot = false;
+  const ModelPtr m = BuildModel(TwoTools(), options);
+  const ModelPtr file = LoadModelFile(TestFile("sim_tool.xml"));
+  for (const std::string part : {"grip", "rod"}) {
+    const int own = IdOf(*file, mjOBJ_GEOM, part);
+    const int a = IdOf(*m, mjOBJ_GEOM, "a_" + part), b = IdOf(*m, mjOBJ_GEOM, "b_" + part);
+    EXPECT_EQ(m->geom_friction[3 * a], file->geom_friction[3 * own]);
+    EXPECT_EQ(m->geom_friction[3 * b], 0.5);
+    for (const int g : {a, b}) {
+      EXPECT_EQ(m->geom_condim[g], file->geom_condim[own]);
+      EXPECT_EQ(m->geom_friction[3 * g + 1], file->geom_friction[3 * own + 1]);
+      EXPECT_EQ(m->geom_solref[mjNREF * g], file->geom_solref[mjNREF * own]);
+      EXPECT_EQ(m->geom_solimp[mjNIMP * g], file->geom_solimp[mjNIMP * own]);
+    }
+  }
+}
+
+TEST(SceneBuilderTest, MassOfTheSceneScalesMassAndInertiaOfTheFile) {
+  BuildOptions options;
+  options.with_robot = false;
+  const ModelPtr m = BuildModel(TwoTools(), options);
+  const int a = IdOf(*m, mjOBJ_BODY, "a"), b = IdOf(*m, mjOBJ_BODY, "b");
+  EXPECT_NEAR(m->body_mass[a], 0.08, 1e-12);
+  EXPECT_NEAR(m->body_mass[b], 0.16, 1e-12);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(m->body_inertia[3 * b + k], 2 * m->body_inertia[3 * a + k], 1e-12);
+    EXPECT_EQ(m->body_ipos[3 * b + k], m->body_ipos[3 * a + k]);
+  }
+}
+
+TEST(SceneBuilderTest, FileObjectsTouchTheTableWithTheirOwnFrictionAndOnlyWhereTheyAreSolid) {
+  BuildOptions options;
+  options.with_robot = false;
+  const Scene scene = TwoTools();
+  Simulation sim(BuildModel(scene, options));
+  sim.Step(500);
+  ASSERT_FALSE(sim.diverged());
+  int touching = 0;
+  for (const ContactPoint& c : sim.contacts()) {
+    const int tool = NameOf(sim.model(), mjOBJ_BODY, c.body1) == "table" ? c.geom2 : c.geom1;
+    const std::string name = NameOf(sim.model(), mjOBJ_GEOM, tool);
+    ASSERT_TRUE(name == "a_grip" || name == "b_grip") << name;
+    EXPECT_EQ(c.friction, name == "a_grip" ? 0.7 : 0.5);
+    ++touching;
+  }
+  EXPECT_GE(touching, 6);
+  for (int i = 0; i < 2; ++i) {
+    const Pose X = BodyPose(sim.model(), sim.data(), scene.objects[i].name);
+    EXPECT_LT((X.translation() - ObjectStartPose(scene, i).translation()).norm(), 1e-3) << i;
+  }
+}
+
 TEST(SceneBuilderTest, WrongStartPosturesAreErrors) {
   Scene scene = TestScene();
   scene.start = {{"arm_r_knee", 0.1}};

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "sim/model_index.h"
 #include "sim/ring.h"
 #include "sim/sim_fixture.h"
 
@@ -82,6 +83,83 @@ TEST(SceneTest, RestingObjectsStandOnTheTable) {
   const double a = ring.radius * std::cos(M_PI / ring.segments);
   EXPECT_NEAR(std::hypot(a, z - ring.tube), 0.02 + ring.tube, 1e-12);
   EXPECT_THROW(ObjectIndex(s, "cup"), Error);
+}
+
+// A scene beside the test's files, with one object.
+Scene SceneOf(const std::string& object) {
+  return ParseScene("objects: [{name: thing, " + object + "}]", TestFile("thing.yaml"));
+}
+
+TEST(SceneTest, FileObjectsHaveTheMassAndFrictionOfTheirFile) {
+  const SceneObject o = SceneOf("model: sim_tool.xml, pose: [0.3, 0.6]").objects[0];
+  EXPECT_NEAR(o.mass, 0.08, 1e-12);
+  EXPECT_EQ(o.friction, 0.4);  // the least of its parts
+  EXPECT_TRUE(o.friction_of_file);
+  const BelievedObject told =
+      BelieveObject(SceneOf("model: sim_tool.xml, pose: [0.3, 0.6], believed: {mass: 0.5}"), 0);
+  EXPECT_NEAR(told.mass, 0.12, 1e-12);
+  EXPECT_EQ(told.friction, 0.4);
+}
+
+TEST(SceneTest, TheScenesMassAndFrictionOverruleTheFile) {
+  const Scene s = SceneOf("model: sim_tool.xml, pose: [0.3, 0.6], mass: 0.3, friction: 0.55");
+  EXPECT_FALSE(s.objects[0].friction_of_file);
+  EXPECT_EQ(BelieveObject(s, 0).mass, 0.3);
+  EXPECT_EQ(BelieveObject(s, 0).friction, 0.55);
+}
+
+TEST(SceneTest, AShapeBesideAFileIsWhatTheRobotTakesItFor) {
+  const Scene s = SceneOf("model: sim_tool.xml, shape: 'box:0.06x0.02x0.03', pose: [0.3, 0.6]");
+  EXPECT_EQ(BelieveObject(s, 0).shape->size.z(), 0.03);
+  EXPECT_NEAR(ObjectStartPose(s, 0).translation().z() - s.table.height, 0.01, 1e-9);  // the file's
+  BuildOptions options;
+  options.with_robot = false;
+  EXPECT_GE(FindId(*BuildModel(s, options), mjOBJ_GEOM, "thing_rod"), 0);
+}
+
+TEST(SceneTest, MeshesHaveTheDefaultMassAndFriction) {
+  const SceneObject o = SceneOf("model: sim_wedge.obj, pose: [0.3, 0.6]").objects[0];
+  EXPECT_EQ(o.mass, SceneObject().mass);
+  EXPECT_EQ(o.friction, SceneObject().friction);
+}
+
+TEST(SceneTest, RestingFileObjectsTouchTheTableWithTheirLowestPoint) {
+  const auto height = [](const std::string& object) {
+    const Scene s = SceneOf(object);
+    return ObjectStartPose(s, 0).translation().z() - s.table.height;
+  };
+  EXPECT_NEAR(height("model: sim_cup.xml, pose: [0.3, 0.6]"), 0, 1e-9);
+  EXPECT_NEAR(height("model: sim_tool.xml, pose: [0.3, 0.6], yaw: 0.7"), 0.01, 1e-9);
+  // The wider sphere of the egg sits on the ring; its centre is 5 mm below the egg's origin.
+  const Ring ring = RingForSphere(0.04);
+  EXPECT_NEAR(height("model: sim_egg.xml, pose: [0.3, 0.6], on_ring: true"),
+              SphereHeightOnRing(ring, 0.02) + 0.005, 1e-9);
+}
+
+TEST(SceneTest, UnfitObjectFilesAreErrorsThatNameSceneAndFile) {
+  const auto message = [](const std::string& object) -> std::string {
+    try {
+      SceneOf(object);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "(no error)";
+  };
+  EXPECT_THAT(message("model: sim_cup.xml, pose: [0, 0.6], on_ring: true"),
+              AllOf(HasSubstr("thing.yaml:1"), HasSubstr("spheres on the z axis")));
+  EXPECT_THAT(message("model: nothing.xml, pose: [0, 0.6]"),
+              AllOf(HasSubstr("thing.yaml:1"), HasSubstr("nothing.xml")));
+  const std::string world = "<mujoco><compiler angle='radian'/><worldbody>{}</worldbody></mujoco>";
+  const std::string ball = "<body><geom size='0.02'/></body>";
+  const std::string glass = "<body><geom size='0.02' contype='0' conaffinity='0'/></body>";
+  const std::string path = ::testing::TempDir() + "scene_test_object.xml";
+  const std::string use = "model: '" + path + "', pose: [0, 0.6]";
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {ball + ball, "exactly one body"}, {"", "exactly one body"}, {glass, "can be touched"}};
+  for (const auto& [bodies, reason] : cases) {
+    WriteFileAtomically(path, fmt::format(fmt::runtime(world), bodies));
+    EXPECT_THAT(message(use), AllOf(HasSubstr("thing.yaml:1"), HasSubstr(path), HasSubstr(reason)));
+  }
 }
 
 TEST(SceneTest, DrawsStayWithinTheNoiseAndRepeat) {
