@@ -152,7 +152,7 @@ SceneCamera ReadCamera(YamlReader& yaml) {
 // Caps and skin; keys that are absent leave the model's.
 void ReadLook(YamlReader& yaml, SceneDemonstrator& d) {
   if (yaml.Has("cap_diameter")) {
-    yaml.Read("cap_diameter", d.cap_diameter.emplace(), {0.012, 0.04});
+    yaml.Read("cap_diameter", d.cap_diameter.emplace(), {0.012, 0.03});
   }
   if (yaml.Has("skin_colour")) yaml.Read("skin_colour", d.skin_colour.emplace(), kFraction);
   if (!yaml.Has("cap_colour")) return;

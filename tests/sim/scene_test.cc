@@ -86,7 +86,7 @@ TEST(SceneTest, CapsAndSkinOutOfRangeAreErrorsWithFileAndLine) {
     return MessageOf("demonstrator:\n  type: pinch\n  " + key + "\n");
   };
   EXPECT_THAT(demonstrator("cap_diameter: 0.2"),
-              AllOf(HasSubstr("scene.yaml:3"), HasSubstr("cap_diameter"), HasSubstr("0.04")));
+              AllOf(HasSubstr("scene.yaml:3"), HasSubstr("cap_diameter"), HasSubstr("0.03")));
   EXPECT_THAT(demonstrator("cap_diameter: green"),
               AllOf(HasSubstr("scene.yaml:3"), HasSubstr("cap_diameter")));
   EXPECT_THAT(demonstrator("cap_colour: [0, 255, 0]"),
