@@ -99,7 +99,8 @@ def add_palm(hand, scale):
         add(hand, "geom", class_="mmm_skin", name=f"mmm_{name}", fromto=scale.point(start) + scale.point(end),
             size=scale(radius))
     for name, centre, half in PALM_BALLS:
-        add(hand, "geom", class_="mmm_skin", name=f"mmm_{name}", type="ellipsoid", pos=scale.point(centre), size=scale(half))
+        add(hand, "geom", class_="mmm_skin", name=f"mmm_{name}", type="ellipsoid", pos=scale.point(centre),
+            size=scale(half))
     start, end, radius = SLEEVE
     add(hand, "geom", class_="mmm_sleeve", name="mmm_sleeve", fromto=scale(start, end), size=scale(radius))
 
@@ -116,7 +117,8 @@ def add_skin(element, name, finger, segment, end, pad_centre, scale):
 
 def add_joint(element, name, node, key, side):
     axis, limits = node["axis"], node["range"]
-    if side == "left" and key.endswith("x"):  # abduction: the source's positive moves away from the left thumb
+    # Abduction: the source's moves left fingertips away from the thumb.
+    if side == "left" and key.endswith("x"):
         axis, limits = [-a for a in axis], [-limits[1], -limits[0]]
     add(element, "joint", name=name, axis=axis, range=limits)
 
@@ -177,11 +179,14 @@ def build(data, options, side):
     add(root, "compiler", autolimits="true", angle="radian")
     # For programs that scale the hand.
     add(add(root, "custom"), "numeric", name="mmm_hand_length", data=options.length)
+    # For looking at the file alone; a scene that takes the hand has its own.
+    scale = Scale(options.length / DRAWN_LENGTH, side)
+    add(root, "statistic", extent=scale(0.27), center=scale(0.04, 0.0, 0.0))
+    add(add(root, "visual"), "headlight", ambient=(0.45, 0.45, 0.45), diffuse=(0.5, 0.5, 0.5), specular=(0, 0, 0))
     add_defaults(root)
     add_materials(root, options)
     hand = add(add(root, "worldbody"), "body", name="mmm_hand", childclass="mmm_hand")
     add(hand, "site", class_="mmm_frame", name="mmm_H")
-    scale = Scale(options.length / DRAWN_LENGTH, side)
     add_palm(hand, scale)
     add_fingers(hand, data, options, scale, side)
     return root
