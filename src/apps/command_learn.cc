@@ -52,6 +52,11 @@ void AddLearnCommand(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"human", "paper"}))
       ->capture_default_str();
   command->add_option("--name", learn.name, "of the library entry (default: the type)");
+  command
+      ->add_option("--hand-length", learn.hand_length,
+                   "of the demonstrator, wrist to middle fingertip, m: scales the rest lengths")
+      ->check(CLI::Range(0.1, 0.3))
+      ->capture_default_str();
   CLI::Option* object = command->add_option(
       "--object", options->object,
       "the object that was grasped: sphere:D, cylinder:DxH or box:XxYxZ, metres");

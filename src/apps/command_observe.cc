@@ -19,7 +19,8 @@ struct Options {
   double noise = 0;
 };
 
-void Print(const ObservationErrors& errors) {
+void Print(const Observation& observation) {
+  const ObservationErrors& errors = observation.errors;
   std::vector<std::vector<std::string>> rows = {
       {"finger", "median mm", "95 % mm", "tracked while visible %"}};
   for (int f = 0; f < kNumFingers; ++f) {
@@ -32,6 +33,8 @@ void Print(const ObservationErrors& errors) {
   fmt::print("hand: median {:.1f} mm, {:.1f} deg, seen in {:.0f} % of frames\n",
              1e3 * errors.wrist_median, errors.wrist_rotation_median_deg,
              100 * errors.wrist_coverage);
+  fmt::print("hand length: {:.0f} mm as estimated in the lead-in\n",
+             1e3 * kMmmHandLength * observation.summary.hand_scale);
 }
 
 int RunObserve(const Options& options) {
@@ -53,7 +56,7 @@ int RunObserve(const Options& options) {
   if (!options.truth.empty()) WriteDemonstration(observation.truth, options.truth);
   WriteDemonstration(observation.tracked, options.output);
   fmt::print("{}: {} samples\n", options.output, observation.tracked.samples.size());
-  Print(observation.errors);
+  Print(observation);
   return kDone;
 }
 

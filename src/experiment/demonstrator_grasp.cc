@@ -29,30 +29,31 @@ TypePrior PriorOf(const DemonstratorHand& hand, const std::string& type, const S
   const FingerAngles curled{0, 0.75, 1.0, 0.5};
   const Eigen::Vector3d X = Eigen::Vector3d::UnitX(), Y = Eigen::Vector3d::UnitY(),
                         Z = Eigen::Vector3d::UnitZ();
+  const double s = hand.scale();
   TypePrior prior;
   if (type == "pinch") {
     prior.q =
         PostureOf(hand.tree, {1.1, 0.0, 0.3, 0.3}, {{{0, 0.8, 0.6, 0.3}, curled, curled, curled}});
     prior.R_OH = HandAxes(-Z, Y);
-    prior.p_HO = {0.10, 0.03, -0.06};
+    prior.p_HO = s * Eigen::Vector3d(0.10, 0.03, -0.06);
   } else if (type == "tripod") {
     prior.q = PostureOf(hand.tree, {1.2, 0.0, 0.3, 0.3},
                         {{{0.05, 0.8, 0.6, 0.3}, {-0.05, 0.8, 0.6, 0.3}, curled, curled}});
     // Turned so that a face of a box lies between thumb and fingers.
     prior.R_OH = Eigen::AngleAxisd(0.2, Z) * HandAxes(-Z, Y);
-    prior.p_HO = {0.10, 0.02, -0.06};
+    prior.p_HO = s * Eigen::Vector3d(0.10, 0.02, -0.06);
   } else if (type == "power") {
     const FingerAngles wrapped{0, 0.8, 0.9, 0.5};
     prior.q = PostureOf(hand.tree, {1.1, 0.1, 0.4, 0.4}, {{wrapped, wrapped, wrapped, wrapped}});
     prior.R_OH = HandAxes(-X, Y);
-    prior.p_HO = {0.08, 0.0, -0.024 - shape.size.x() / 2};
+    prior.p_HO = {s * 0.08, 0.0, -s * 0.024 - shape.size.x() / 2};
     prior.hold = 4;
   } else {
     const FingerAngles fist{0, 0.8, 1.3, 0.6};
     prior.q =
         PostureOf(hand.tree, {0.5, 0.1, 0.3, 0.3}, {{{0.1, 0.7, 0.9, 0.5}, fist, fist, fist}});
     prior.R_OH = HandAxes(-X, Y);
-    prior.p_HO = {0.10, 0.045, -0.05};
+    prior.p_HO = s * Eigen::Vector3d(0.10, 0.045, -0.05);
   }
   return prior;
 }
@@ -187,22 +188,24 @@ class HeldProblem {
       }
       if (!involved_[f]) hinge(chain.back(), hand_.tip_radius);
     }
+    const double s = hand_.scale();
     for (const double x : {0.03, 0.055, 0.08}) {
-      for (const double y : {-0.025, 0.0, 0.02}) hinge({x, y, 0}, kPalmThickness);
+      for (const double y : {-0.025, 0.0, 0.02}) hinge({s * x, s * y, 0}, s * kPalmThickness);
     }
   }
 
   // Neighbouring fingers lie beside each other in their order, fanned out so far that their caps
-  // (10 mm in radius) do not touch: people are asked to, so that the cameras can tell them apart.
+  // do not touch: people are asked to, so that the cameras can tell them apart.
   void AddSeparations() {
-    constexpr double kPush = 60, kCapsApart = 0.023;
+    constexpr double kPush = 60;
     const double apart = 2 * hand_.tip_radius + 0.002;
+    const double caps_apart = 2 * hand_.size.cap_radius + 0.003;
     for (int f = kIndex; f + 1 < kNumFingers; ++f) {
       const auto& a = parts_.chains[f];
       const auto& b = parts_.chains[f + 1];
       for (std::size_t k = 1; k < std::min(a.size(), b.size()); ++k) {
         const bool tips = k + 1 == a.size();
-        Add(std::max(0.0, (tips ? kCapsApart : apart) - (a[k].y() - b[k].y())) * kPush);
+        Add(std::max(0.0, (tips ? caps_apart : apart) - (a[k].y() - b[k].y())) * kPush);
       }
     }
   }

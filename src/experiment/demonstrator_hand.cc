@@ -35,9 +35,13 @@ Eigen::VectorXd ReadPosture(const KinematicTree& tree, const std::string& path) 
   return q;
 }
 
-DemonstratorHand MakeDemonstratorHand(KinematicTree tree, const std::string& folder) {
+DemonstratorHand MakeDemonstratorHand(KinematicTree tree, const HandSize& size,
+                                      const std::string& folder) {
   DemonstratorHand hand;
   hand.tree = std::move(tree);
+  hand.size = size;
+  hand.tip_radius *= hand.scale();
+  hand.finger_radius *= hand.scale();
   for (int f = 0; f < kNumFingers; ++f) {
     hand.tip_frames[f] = hand.tree.FrameIndex("mmm_" + std::string(kFingerNames[f]) + "_tip");
     // Bodies at the same place (abduction and flexion) count once.

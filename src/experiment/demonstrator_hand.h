@@ -7,24 +7,34 @@
 #include <vector>
 
 #include "base/fingers.h"
+#include "kinematics/human_hand.h"
 #include "kinematics/kinematic_tree.h"
 
 namespace springgrasp {
+
+struct HandSize {
+  double length = kMmmHandLength;  // m, wrist centre to middle fingertip
+  double cap_radius = 0.010;       // m, of the largest cap
+};
 
 struct DemonstratorHand {
   KinematicTree tree;                 // root: H
   PerFinger<int> tip_frames = {};     // of the pad spheres
   PerFinger<std::vector<int>> links;  // bodies with a segment, from the knuckle outwards
-  double tip_radius = 0.008;          // m
-  double finger_radius = 0.0085;      // m, of the segments
-  Eigen::VectorXd open;               // five separable fingertips, rad
-  Eigen::VectorXd relaxed;            // rad
+  HandSize size;
+  double tip_radius = 0.008;      // m; given for a hand of kMmmHandLength, scaled with it
+  double finger_radius = 0.0085;  // m, of the segments; likewise
+  Eigen::VectorXd open;           // five separable fingertips, rad
+  Eigen::VectorXd relaxed;        // rad
+
+  double scale() const { return size.length / kMmmHandLength; }
 };
 
-// From the tree below body `mmm_hand` (sim/kinematic_tree_of.h), with the postures in open.yaml and
-// relaxed.yaml of `folder` (default: the shipped models/mmm_hand). Throws Error if a joint, a tip
-// or a file is missing.
-DemonstratorHand MakeDemonstratorHand(KinematicTree tree, const std::string& folder = "");
+// From the tree below body `mmm_hand` (sim/kinematic_tree_of.h) of a hand of that size, with the
+// postures in open.yaml and relaxed.yaml of `folder` (default: the shipped models/mmm_hand). Throws
+// Error if a joint, a tip or a file is missing.
+DemonstratorHand MakeDemonstratorHand(KinematicTree tree, const HandSize& size = {},
+                                      const std::string& folder = "");
 
 // Reads `joint: angle` lines (rad, within the joint ranges); joints not named are 0. Throws Error.
 Eigen::VectorXd ReadPosture(const KinematicTree& tree, const std::string& path);

@@ -85,15 +85,17 @@ Pose AlignPoints(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen:
 
 // Thumb and fingers wear caps: where bare fingertips came nearer than two cap radii, each shown tip
 // gives way by half of what is missing (softly, so that the motion stays smooth).
-void KeepCapsApart(std::vector<std::vector<Eigen::Vector3d>>& tips, const PerFinger<bool>& known) {
-  constexpr double kCapsApart = 0.024;  // m, two radii of 10 mm and a gap
+void KeepCapsApart(double cap_radius, const PerFinger<bool>& known,
+                   std::vector<std::vector<Eigen::Vector3d>>& tips) {
+  constexpr double kGap = 0.004;  // m
+  const double apart = 2 * cap_radius + kGap;
   for (int f = kIndex; f < kNumFingers; ++f) {
     if (!known[f]) continue;
     for (std::size_t i = 0; i < tips[f].size(); ++i) {
       const Eigen::Vector3d between = tips[f][i] - tips[kThumb][i];
       const double distance = between.norm();
       if (distance < 1e-4) continue;
-      const double wanted = std::pow(std::pow(distance, 8) + std::pow(kCapsApart, 8), 0.125);
+      const double wanted = std::pow(std::pow(distance, 8) + std::pow(apart, 8), 0.125);
       const Eigen::Vector3d half = between * ((wanted - distance) / (2 * distance));
       tips[f][i] += half;
       tips[kThumb][i] -= half;
@@ -257,7 +259,7 @@ HandMotion HandMotionOf(const DemonstratorHand& hand, const Demonstration& recor
     }
     tips[f] = Bridged(t, points);
   }
-  KeepCapsApart(tips, known);
+  KeepCapsApart(hand.size.cap_radius, known, tips);
   std::vector<Pose> X_WH(n);
   std::vector<KnownTips> p_HF(n);
   if (X_WM) {

@@ -104,9 +104,10 @@ double GripSize(const DemonstratorHand& hand, const HeldPosture& held) {
 // A hand about to grasp is nearly closed: as if it held something smaller, its caps just apart.
 Eigen::VectorXd StartPosture(const DemonstratorHand& hand, const HeldPosture& held,
                              const SynthesiseOptions& options, const Eigen::VectorXd& spread) {
-  constexpr double kSmaller = 0.65, kLeastAperture = 0.035;  // m
-  if (Aperture(hand, held.q) < kLeastAperture) {
-    return PostureOfAperture(hand, held.q, spread, kLeastAperture);
+  constexpr double kSmaller = 0.65, kGap = 0.015;  // m, between the caps
+  const double least_aperture = 2 * hand.size.cap_radius + kGap;
+  if (Aperture(hand, held.q) < least_aperture) {
+    return PostureOfAperture(hand, held.q, spread, least_aperture);
   }
   Shape smaller = options.shape;
   smaller.size *= kSmaller;
@@ -177,8 +178,8 @@ HandMotion SynthesiseGrasp(const DemonstratorHand& hand, const SynthesiseOptions
   const Style style = DrawStyle(engine);
   const HeldPosture held = SolveHeldPosture(hand, options.type, options.shape, style.grasp);
   ThrowUnless(held.worst_gap < kMaxGap && held.worst_penetration < kMaxPenetration,
-              "a hand of {:.0f} mm cannot hold {} by a {} grasp (fingertips {:.0f} mm off)", 189.0,
-              FormatShape(options.shape), options.type,
+              "a hand of {:.0f} mm cannot hold {} by a {} grasp (fingertips {:.0f} mm off)",
+              1000 * hand.size.length, FormatShape(options.shape), options.type,
               1000 * std::max(held.worst_gap, held.worst_penetration));
 
   const Approach approach = ApproachOf(options.type);

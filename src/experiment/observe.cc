@@ -142,7 +142,8 @@ Observation ObserveMotion(ObserveStage& stage, const HandMotion& motion, RandomE
   TrackDemonstrationOptions tracking;
   tracking.lead_in = -result.shown.samples.front().t;
   if (stage.shows_object()) tracking.object = motion.object;
-  result.tracked = TrackStereo(camera, stage.eyes(), &stage.hand().tree, tracking, engine, draw,
+  if (stage.cap_hue_deg()) tracking.tracker.colour.hue_deg = stage.cap_hue_deg();
+  result.tracked = TrackStereo(camera, stage.eyes(), &stage.common_hand(), tracking, engine, draw,
                                &result.summary);
   if (video) video->Finish();
   result.tracked.source = motion.source;

@@ -56,8 +56,9 @@ std::optional<Shape> ShownShape(const Scene& scene);
 HandMotion PrepareDemonstration(const Scene& scene, const ObserveStage& stage,
                                 RandomEngine& engine);
 
-// Renders and tracks `motion` (placed, with lead-in). The tracker is told the cameras and, if it is
-// in the picture, the object that the demonstration tells of; nothing else.
+// Renders and tracks `motion` (placed, with lead-in). The tracker is told the cameras, the
+// hue of caps that are not green and, if it is in the picture, the object that the demonstration
+// tells of; nothing else: how long the hand is it finds out.
 Observation ObserveMotion(ObserveStage& stage, const HandMotion& motion, RandomEngine& engine,
                           const ObserveOptions& options = {});
 

@@ -9,7 +9,7 @@
 namespace springgrasp {
 namespace {
 
-constexpr double kPalmRadius = 0.012;  // m, of the metacarpals as segments
+constexpr double kPalmRadius = 0.012;  // m, of the metacarpals as segments, at kMmmHandLength
 
 // One instant of the motion in its own frame M.
 struct Instant {
@@ -68,8 +68,8 @@ double Seen(const DemonstratorHand& hand, const Instant& instant, const HandMoti
   for (int g = 0; g < kNumFingers; ++g) {
     const auto& chain = instant.shape.chains[g];
     // The metacarpal, then the segments; of the own finger not the last two.
-    clearance =
-        std::min(clearance, SegmentDistance(p_ME, tip, instant.wrist, chain[0]) - kPalmRadius);
+    clearance = std::min(clearance, SegmentDistance(p_ME, tip, instant.wrist, chain[0]) -
+                                        hand.scale() * kPalmRadius);
     const std::size_t segments = chain.size() - 1 - (g == f ? 2 : 0);
     for (std::size_t k = 0; k < segments; ++k) {
       clearance = std::min(clearance,
@@ -81,11 +81,13 @@ double Seen(const DemonstratorHand& hand, const Instant& instant, const HandMoti
 
 // How well neighbouring caps are told apart along a direction of view: 1 if none overlap, 0 if each
 // hides the next.
-double Separation(const PerFinger<Eigen::Vector3d>& tips, const Eigen::Vector3d& view) {
-  constexpr double kCapsApart = 0.022;  // m, two radii of 10 mm and a gap
+double Separation(const PerFinger<Eigen::Vector3d>& tips, double cap_radius,
+                  const Eigen::Vector3d& view) {
+  constexpr double kGap = 0.002;  // m
+  const double apart = 2 * cap_radius + kGap;
   double sum = 0;
   for (int f = 0; f + 1 < kNumFingers; ++f) {
-    sum += std::min(1.0, view.cross(tips[f + 1] - tips[f]).norm() / kCapsApart);
+    sum += std::min(1.0, view.cross(tips[f + 1] - tips[f]).norm() / apart);
   }
   return sum / (kNumFingers - 1);
 }
@@ -165,7 +167,7 @@ class Search {
     for (const Instant& i : instants_) {
       const Eigen::Vector3d to_eyes = (p_ME - i.wrist).normalized();
       angle += std::acos(std::clamp(i.palm_normal.dot(to_eyes), -1.0, 1.0));
-      apart += Separation(i.shape.tips, to_eyes);
+      apart += Separation(i.shape.tips, hand_.size.cap_radius, to_eyes);
     }
     place.palm_deg = angle / double(instants_.size()) * 180 / M_PI;
     double others = 0;

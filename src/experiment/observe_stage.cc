@@ -1,5 +1,6 @@
 #include "experiment/observe_stage.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -7,6 +8,7 @@
 #include "sim/kinematic_tree_of.h"
 #include "sim/model_index.h"
 #include "sim/scene_builder.h"
+#include "vision/marker_colour.h"
 
 namespace springgrasp {
 namespace {
@@ -31,13 +33,27 @@ ModelPtr BuildStage(Scene scene, const std::optional<Shape>& shown) {
   return BuildModel(scene, options);
 }
 
+std::string CapOf(std::string_view finger) { return "mmm_" + std::string(finger) + "_cap"; }
+
+DemonstratorHand HandOf(const mjModel& m, const Scene& scene) {
+  HandSize size{scene.demonstrator.hand_length, 0};
+  for (const std::string_view finger : kFingerNames) {
+    size.cap_radius =
+        std::max(size.cap_radius, m.geom_size[3 * IdOf(m, mjOBJ_GEOM, CapOf(finger))]);
+  }
+  return MakeDemonstratorHand(KinematicTreeOf(m, "mmm_hand"), size);
+}
+
 }  // namespace
 
 ObserveStage::ObserveStage(const Scene& scene, const std::optional<Shape>& shown)
     : simulation_(BuildStage(scene, shown)),
-      hand_(MakeDemonstratorHand(KinematicTreeOf(simulation_.model(), "mmm_hand"))),
+      hand_(HandOf(simulation_.model(), scene)),
+      common_hand_(KinematicTreeOf(*LoadModelFile(ModelPath(BuildOptions{}.demonstrator_model)),
+                                   "mmm_hand")),
       object_drawn_(shown.has_value()) {
   const mjModel& m = simulation_.model();
+  if (scene.demonstrator.cap_colour) cap_hue_deg_ = HueDeg(*scene.demonstrator.cap_colour);
   simulation_.Forward();
   RenderOptions options;
   renderer_ = std::make_unique<CameraRenderer>(m, options);
@@ -51,7 +67,7 @@ ObserveStage::ObserveStage(const Scene& scene, const std::optional<Shape>& shown
     joint_addresses_.push_back(m.jnt_qposadr[IdOf(m, mjOBJ_JOINT, joint)]);
   }
   for (const std::string_view finger : kFingerNames) {
-    caps_.push_back(IdOf(m, mjOBJ_GEOM, "mmm_" + std::string(finger) + "_cap"));
+    caps_.push_back(IdOf(m, mjOBJ_GEOM, CapOf(finger)));
   }
 }
 

@@ -24,6 +24,10 @@ class ObserveStage {
   ObserveStage(const Scene& scene, const std::optional<Shape>& shown);
 
   const DemonstratorHand& hand() const { return hand_; }
+  // What the tracker is told of hands: the MMM hand as shipped, whoever demonstrates.
+  const KinematicTree& common_hand() const { return common_hand_; }
+  // Hue of the caps that the demonstrator chose, degrees; absent: the model's green.
+  std::optional<double> cap_hue_deg() const { return cap_hue_deg_; }
   const StereoCameras& eyes() const { return eyes_; }
   const mjModel& model() const { return simulation_.model(); }
   bool shows_object() const { return object_drawn_; }
@@ -37,6 +41,8 @@ class ObserveStage {
  private:
   Simulation simulation_;
   DemonstratorHand hand_;
+  KinematicTree common_hand_;
+  std::optional<double> cap_hue_deg_;
   StereoCameras eyes_;
   std::unique_ptr<CameraRenderer> renderer_;
   std::vector<int> joint_addresses_;  // of the hand's joints in qpos

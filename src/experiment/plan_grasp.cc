@@ -53,8 +53,8 @@ double ClearanceOnTheWay(const RobotHand& hand, const Shape& shape, const Pose& 
   return clearance;
 }
 
-ContactRequest RequestContacts(const RobotBody& body, const FingertipMotion& motion,
-                               const Eigen::VectorXd& q_human) {
+ContactRequest RequestContacts(const HumanHand& human, const RobotHand& hand,
+                               const FingertipMotion& motion, const Eigen::VectorXd& q_human) {
   ContactRequest contacts;
   contacts.type = motion.type;
   contacts.involved = motion.involved;
@@ -63,7 +63,7 @@ ContactRequest RequestContacts(const RobotBody& body, const FingertipMotion& mot
   contacts.n_OC = motion.n_OC;
   contacts.X_OH_human = motion.X_HO.inverse();
   contacts.X_OG = contacts.X_OH_human * motion.X_HG;
-  contacts.human = TargetFromHuman(body.human, q_human, body.hand);
+  contacts.human = TargetFromHuman(human, q_human, hand);
   return contacts;
 }
 
@@ -158,6 +158,8 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
   generate.tip_radius = body.hand.tip_radius;
   generate.dt = dt;
   const Pose X_WH_start = HandPose(body.arm, request.arm_start);
+  // The hand that demonstrated.
+  const HumanHand human = ScaledHand(body.human, grasp.hand_length / kMmmHandLength);
 
   for (const double slower : kSlower) {
     generate.duration = slower * std::max(kFastest, grasp.scales.T);
@@ -166,9 +168,9 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
 
     // Where the hand holds the object (independent of where the object stands).
     FingertipMotion motion = GenerateMotion(grasp, generate);
-    std::vector<Eigen::VectorXd> q_human = SolveHandMotion(body.human, TipsOf(motion));
+    std::vector<Eigen::VectorXd> q_human = SolveHandMotion(human, TipsOf(motion));
     const ContactRequest contacts =
-        RequestContacts(body, motion, q_human[ContactSample(motion, dt)]);
+        RequestContacts(human, body.hand, motion, q_human[ContactSample(motion, dt)]);
     result.posture = SolveContactPosture(body.hand, contacts);
     const Pose X_GH = result.posture.X_HG.inverse();
     const Eigen::VectorXd q_open =
@@ -193,7 +195,7 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
 
     const std::vector<Pose> nominal = path(Pose::Identity());
     const HandMotionResult nominal_hand = MapHandMotion(
-        body.human, body.hand, RequestHandMotion(motion, q_human, nominal, request.object.X_WO, dt),
+        human, body.hand, RequestHandMotion(motion, q_human, nominal, request.object.X_WO, dt),
         result.posture);
     ReachRequest reach;
     reach.shape = generate.shape;
@@ -228,10 +230,10 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     // The chosen one in full.
     const Pose X_WO = request.object.X_WO * planned.X_OF;
     path(planned.X_OF);
-    q_human = SolveHandMotion(body.human, TipsOf(motion));
+    q_human = SolveHandMotion(human, TipsOf(motion));
     const HandMotionResult hand =
-        MapHandMotion(body.human, body.hand,
-                      RequestHandMotion(motion, q_human, planned.X_WH, X_WO, dt), result.posture);
+        MapHandMotion(human, body.hand, RequestHandMotion(motion, q_human, planned.X_WH, X_WO, dt),
+                      result.posture);
     result.motion = motion;
     result.mapping_error = hand.mapping_error;
     result.clearance = hand.clearance;

@@ -11,7 +11,7 @@ namespace springgrasp {
 struct RobotBody {
   Arm arm;  // world to hand frame H, right side
   RobotHand hand;
-  HumanHand human;  // MMM hand of the shipped size, scaled by the caller where it matters
+  HumanHand human;  // MMM hand as shipped, kMmmHandLength; planning scales it
 };
 
 // From a scene's model at its start posture. Throws Error if the model lacks arm or hand.

@@ -51,10 +51,11 @@ Demonstration DemonstrationFor(const TrialSpec& spec, const Observation& seen) {
 }
 
 // The baseline: the same reach, with the fingers held as an open hand all the time.
-void HoldOpen(Demonstration& demonstration) {
+void HoldOpen(double hand_length, Demonstration& demonstration) {
   const ModelPtr model = LoadModelFile(ModelPath("mmm_hand/mmm_hand_r.xml"));
   const DemonstratorHand hand = MakeDemonstratorHand(KinematicTreeOf(*model, "mmm_hand"));
-  const PerFinger<Eigen::Vector3d> p_HF = ComputeHandShape(hand, hand.open).tips;
+  PerFinger<Eigen::Vector3d> p_HF = ComputeHandShape(hand, hand.open).tips;
+  for (Eigen::Vector3d& p : p_HF) p *= hand_length / kMmmHandLength;
   for (DemonstrationSample& sample : demonstration.samples) {
     sample.p_WF.fill(std::nullopt);
     if (!sample.p_WH || !sample.R_WH) continue;
@@ -169,7 +170,7 @@ TrialResult RunTrial(const TrialSpec& spec, const TrialOutput& output) {
   watch.Lap("observe");
 
   Demonstration demonstration = DemonstrationFor(spec, seen);
-  if (spec.open_hand) HoldOpen(demonstration);
+  if (spec.open_hand) HoldOpen(scene.demonstrator.hand_length, demonstration);
   if (output.trajectories && !output.folder.empty()) {
     WriteDemonstration(demonstration, file(true, "demonstration.csv"));
     WriteDemonstration(seen.truth, file(true, "truth.csv"));

@@ -30,6 +30,10 @@ Fingertips RelaxedTips(const LearnOptions& options) {
   return tips;
 }
 
+double TipRadius(const LearnOptions& options) {
+  return options.tip_radius * (options.hand_length / kNominalHandLength);
+}
+
 Pose NominalGraspInHand(const LearnOptions& options) {
   Pose X_HG = options.X_HG_nominal.value_or(DefaultGraspInHand());
   X_HG.translation() *= options.hand_length / kNominalHandLength;
@@ -172,7 +176,7 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   grasp.profile = options.profile;
   grasp.dim = options.dim;
   grasp.hand_length = options.hand_length;
-  grasp.tip_radius = options.tip_radius;
+  grasp.tip_radius = TipRadius(options);
   grasp.involved = InvolvedFingers(options.type);
   ThrowUnless(options.dim == 2 || options.dim == 3, "dim is {}, expected 2 or 3", options.dim);
   ThrowUnless(options.profile == "human" || options.profile == "paper",
@@ -219,7 +223,7 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
     for (int i = 0; i < kNumFingers; ++i) p_WF[i] = X_WH * p_HC[i];
     const Pose X_WG = X_WH * grasp.X_HG;
     const Vector3d up = demonstration.up.value_or(X_WG.linear().col(1));
-    const InferredObject inferred = InferObject(p_WF, grasp.involved, X_WG, up, options.tip_radius);
+    const InferredObject inferred = InferObject(p_WF, grasp.involved, X_WG, up, TipRadius(options));
     X_WO = inferred.X_AO;
     grasp.shape = inferred.shape;
   }

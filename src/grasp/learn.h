@@ -19,8 +19,8 @@ struct LearnOptions {
   int dim = 3;                               // 2: the paper's plane, 3
   std::string profile = "human";             // human: delay and closing gain fitted; paper: 0 and 1
   std::optional<DemonstratedObject> object;  // overrides the demonstration's; X_WO in its frame
-  double hand_length = 0.189;                // m, scales the relaxed tips
-  double tip_radius = 0.008;                 // m, of the demonstrating fingers
+  double hand_length = 0.189;                // m, scales the relaxed tips and their radius
+  double tip_radius = 0.008;                 // m, of the demonstrating fingers at 0.189 m
   // Fingertips of the relaxed hand in H at a hand length of 0.189 m: rest lengths, and fingers
   // that were never seen. Default: DefaultRelaxedTips().
   std::optional<PerFinger<Eigen::Vector3d>> relaxed_tips;

@@ -51,6 +51,14 @@ HumanHand MakeHumanHand(KinematicTree tree) {
   return hand;
 }
 
+HumanHand ScaledHand(const HumanHand& hand, double factor) {
+  HumanHand scaled = hand;
+  for (KinematicTree::Node& node : scaled.tree.nodes) node.X_PB.translation() *= factor;
+  for (KinematicTree::Frame& frame : scaled.tree.frames) frame.X_BF.translation() *= factor;
+  for (double& length : scaled.length) length *= factor;
+  return scaled;
+}
+
 PerFinger<FlexionAngles> FlexionOf(const HumanHand& hand, const Eigen::VectorXd& q) {
   PerFinger<FlexionAngles> flexion;
   for (int f = 0; f < kNumFingers; ++f) {

@@ -9,6 +9,9 @@
 
 namespace springgrasp {
 
+// Wrist centre to middle fingertip of the hand in models/mmm_hand: 0.108 of 1.75 m body height.
+inline constexpr double kMmmHandLength = 0.189;  // m
+
 struct HumanHand {
   KinematicTree tree;                  // root: H
   PerFinger<std::vector<int>> joints;  // from the wrist to the tip, indices into q
@@ -21,6 +24,9 @@ struct HumanHand {
 // From the tree below body `mmm_hand` (its frame is H). Joints are found by their MMM names.
 // Throws Error if one is missing.
 HumanHand MakeHumanHand(KinematicTree tree);
+
+// The same hand with all lengths multiplied by `factor`.
+HumanHand ScaledHand(const HumanHand& hand, double factor);
 
 // Flexion angles that Eq. 14 compares, rad. Thumb: CMC flexion + MCP (from straight out of the
 // palm plane's 45 degrees), IP. Fingers: MCP, PIP + DIP.

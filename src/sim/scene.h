@@ -84,6 +84,10 @@ struct SceneDemonstrator {
                                      // chosen in the display volume before the eyes
   double hand_length = 0.189;        // m
   int fps = 30;                      // of the eyes, Hz
+  // Absent: as in the model of the hand. Colours are red, green, blue, 0..1.
+  std::optional<double> cap_diameter;  // m
+  std::optional<Eigen::Vector3d> cap_colour;
+  std::optional<Eigen::Vector3d> skin_colour;
 };
 
 struct ScenePhysics {

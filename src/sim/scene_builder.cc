@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "sim/demonstrator_part.h"
 #include "sim/mjcf_part.h"
 #include "sim/model_index.h"
 #include "sim/scene_furniture.h"
@@ -65,14 +66,11 @@ void AddRobot(const Scene& scene, XmlDocument& document) {
   MergeMjcfPart(*part, document);
 }
 
-void AddDemonstrator(const BuildOptions& options, XmlDocument& document) {
-  const std::string path = ModelPath(options.demonstrator_model);
-  const std::unique_ptr<XmlDocument> part = ReadMjcfPart(path, "demonstrator");
+void AddDemonstrator(const Scene& scene, const BuildOptions& options, XmlDocument& document) {
+  const std::unique_ptr<XmlDocument> part =
+      ReadDemonstratorPart(ModelPath(options.demonstrator_model), scene);
   XmlElement* world = ChildOf(part->FirstChildElement("mujoco"), "worldbody");
-  XmlElement* hand = FindBody(world, "mmm_hand");
-  ThrowUnless(hand != nullptr && hand->Parent() == world,
-              "{}: expected a body named mmm_hand in the world", path);
-  hand->SetAttribute("mocap", "true");
+  FindBody(world, "mmm_hand")->SetAttribute("mocap", "true");
   MakeIntangible(world);
   MergeMjcfPart(*part, document);
 }
@@ -151,7 +149,7 @@ std::string BuildMjcf(const Scene& scene, const BuildOptions& options) {
   root->SetAttribute("model", "scene");
   AddSettings(scene, options.offscreen_samples, root);
   if (options.with_robot) AddRobot(scene, document);
-  if (options.with_demonstrator) AddDemonstrator(options, document);
+  if (options.with_demonstrator) AddDemonstrator(scene, options, document);
   AddSurroundings(scene, root);
   if (options.with_table) AddTable(scene, root);
   if (options.with_objects) {

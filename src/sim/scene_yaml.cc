@@ -166,6 +166,22 @@ SceneCamera ReadCamera(YamlReader& yaml) {
   return camera;
 }
 
+// Caps and skin; keys that are absent leave the model's.
+void ReadLook(YamlReader& yaml, SceneDemonstrator& d) {
+  if (yaml.Has("cap_diameter")) {
+    yaml.Read("cap_diameter", d.cap_diameter.emplace(), {0.012, 0.03});
+  }
+  if (yaml.Has("skin_colour")) yaml.Read("skin_colour", d.skin_colour.emplace(), kFraction);
+  if (!yaml.Has("cap_colour")) return;
+  Eigen::Vector3d& colour = d.cap_colour.emplace(Eigen::Vector3d::Zero());
+  yaml.Read("cap_colour", colour, kFraction);
+  // The tracker finds caps by their hue; greys have none, and what is dark has none in a picture.
+  ThrowUnless(colour.maxCoeff() >= 0.3 && colour.minCoeff() <= 0.5 * colour.maxCoeff(),
+              "{}: cap_colour is [{}, {}, {}], expected a bright colour with a hue (the largest at "
+              "least 0.3, the smallest at most half of it)",
+              yaml.Where("cap_colour"), colour.x(), colour.y(), colour.z());
+}
+
 void ReadDemonstrator(YamlReader yaml, const std::string& scene, SceneDemonstrator& d) {
   yaml.Read("kind", d.kind, {"synthesised", "recorded"});
   yaml.Read("type", d.type, {"pinch", "tripod", "power", "lateral"});
@@ -184,6 +200,7 @@ void ReadDemonstrator(YamlReader yaml, const std::string& scene, SceneDemonstrat
     yaml.Read("pose", *d.X_WO);
   }
   yaml.Read("hand_length", d.hand_length, {0.1, 0.3});
+  ReadLook(yaml, d);
   yaml.Read("fps", d.fps, {5, 1000});
   yaml.Finish();
 }

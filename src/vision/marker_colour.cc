@@ -52,6 +52,8 @@ Eigen::Vector3f ChromaOfHue(double hue_deg) {
 
 }  // namespace
 
+double HueDeg(const Eigen::Vector3d& rgb) { return ToHsv(rgb.z(), rgb.y(), rgb.x()).hue_deg; }
+
 double Bhattacharyya(const Histogram& a, const Histogram& b) {
   double sum = 0;
   for (int i = 0; i < kHistogramBins; ++i) sum += std::sqrt(a[i] * b[i]);

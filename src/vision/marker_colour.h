@@ -52,6 +52,9 @@ MarkerColour MakeMarkerColour(const MarkerColourOptions& options);
 // around them: likelihood = 255 * P(cap | bin) with equal priors. Mask and picture of equal size.
 void LearnMarkerColour(const cv::Mat& bgr, const cv::Mat& mask, MarkerColour& colour);
 
+// Hue of a colour (red, green, blue, any scale), 0 to 360; 0 for greys.
+double HueDeg(const Eigen::Vector3d& rgb);
+
 // The hue that most looks like a set of caps: the one whose gate leaves five compact regions of
 // similar size. Nothing when no hue does.
 std::optional<double> FindMarkerHue(const cv::Mat& bgr, MarkerColourOptions options);

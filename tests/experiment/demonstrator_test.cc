@@ -8,6 +8,7 @@
 #include "experiment/demonstrator_grasp.h"
 #include "experiment/demonstrator_recorded.h"
 #include "experiment/demonstrator_synthesise.h"
+#include "experiment/observe_stage.h"
 #include "grasp/object_contacts.h"
 #include "sim/kinematic_tree_of.h"
 #include "sim/scene_builder.h"
@@ -31,6 +32,13 @@ struct Case {
   const char* shape;
   double object_size;  // m, between thumb and fingers
 };
+
+// A person of another size: the hand that the scene's builder makes of it.
+DemonstratorHand HandOfLength(double length) {
+  Scene scene;
+  scene.demonstrator.hand_length = length;
+  return ObserveStage(scene, std::nullopt).hand();
+}
 
 class SynthesisedGraspTest : public testing::TestWithParam<Case> {};
 
@@ -62,6 +70,23 @@ TEST_P(SynthesisedGraspTest, EndsWithTheInvolvedTipsOnTheObject) {
 }
 
 // What is known of human reaches (Ansuini et al. 2015, mocapGrip).
+TEST_P(SynthesisedGraspTest, SmallAndLargeHandsHoldTheSameObject) {
+  const Shape shape = ParseShape(GetParam().shape);
+  for (const double length : {0.165, 0.205}) {
+    const DemonstratorHand hand = HandOfLength(length);
+    EXPECT_NEAR(hand.tip_radius, Hand().tip_radius * length / kMmmHandLength, 1e-12);
+    RandomEngine engine = MakeStream(1, 0, "observation");
+    const HandMotion motion = SynthesiseGrasp(hand, {GetParam().type, shape}, engine);
+    const HandShape parts = ComputeHandShape(hand, motion.samples.back().q);
+    for (int f = 0; f < kNumFingers; ++f) {
+      if (!motion.involved[f]) continue;
+      EXPECT_NEAR(SignedDistance(shape, motion.samples.back().X_WH * parts.tips[f]),
+                  hand.tip_radius, 0.001)
+          << length << " " << kFingerNames[f];
+    }
+  }
+}
+
 TEST_P(SynthesisedGraspTest, MovesLikeAPerson) {
   const Shape shape = ParseShape(GetParam().shape);
   for (int seed = 0; seed < 6; ++seed) {

@@ -89,6 +89,43 @@ TEST(ObserveTest, APinchIsTrackedFromThePicturesAlone) {
   EXPECT_EQ(FormatDemonstration(seen.tracked), FormatDemonstration(second.tracked));
 }
 
+TEST(ObserveTest, TheShownHandIsAsLongAsTheSceneSaysAndTheTrackerIsNotTold) {
+  Scene scene = SceneOf("pinch", "sphere:0.04");
+  const ObserveStage common(scene, std::nullopt);
+  scene.demonstrator.hand_length = 0.165;
+  const ObserveStage small(scene, std::nullopt);
+  const Eigen::VectorXd& q = common.hand().open;
+  const HandShape a = ComputeHandShape(common.hand(), q), b = ComputeHandShape(small.hand(), q);
+  std::vector<Pose> told_common, told_small;
+  ForwardKinematics(common.common_hand(), q, told_common);
+  ForwardKinematics(small.common_hand(), q, told_small);
+  for (int f = 0; f < kNumFingers; ++f) {
+    EXPECT_LT((b.tips[f] - 0.165 / 0.189 * a.tips[f]).norm(), 1e-9) << kFingerNames[f];
+    const int tip = common.hand().tip_frames[f];
+    EXPECT_EQ(FramePose(small.common_hand(), told_small, tip).translation(),
+              FramePose(common.common_hand(), told_common, tip).translation());
+  }
+}
+
+TEST(ObserveTest, ASmallHandWithBigBlueCapsIsTrackedAndSeenToBeSmall) {
+  Scene scene = SceneOf("pinch", "sphere:0.04");
+  scene.demonstrator.hand_length = 0.165;
+  scene.demonstrator.cap_diameter = 0.022;
+  scene.demonstrator.cap_colour = Eigen::Vector3d(0.1, 0.25, 0.9);
+  RandomEngine engine = MakeStream(1, 0, "observation");
+  ObserveOptions options;
+  options.measure_visible = false;
+  const Observation seen = Observe(scene, engine, options);
+  for (const int f : {kThumb, kIndex}) {
+    EXPECT_LT(seen.errors.median[f], 0.005) << kFingerNames[f];
+    EXPECT_GT(seen.errors.seen[f], 0.9) << kFingerNames[f];
+  }
+  EXPECT_NEAR(seen.summary.cap.radius, 0.011, 0.002);
+  // The estimate leaves its prior of 0.189 m, if not by all that it should.
+  EXPECT_LT(seen.summary.hand_scale, 1 - 0.15 * (1 - 0.165 / 0.189));
+  EXPECT_GT(seen.summary.hand_scale, 0.165 / 0.189 - 0.02);
+}
+
 TEST(ObserveTest, AHandThatCannotBeSeenIsAnError) {
   const Scene scene = SceneOf("pinch", "sphere:0.04");
   ObserveStage stage(scene, std::nullopt);

@@ -65,6 +65,21 @@ TEST(LearnTest, LearningTwiceGivesTheSameBytesAndReadsBackTheSame) {
   EXPECT_TRUE(c.X_OH.matrix() == a.X_OH.matrix());
 }
 
+TEST(LearnTest, RestLengthsAndTipRadiusFollowTheHandLength) {
+  SyntheticGrasp made;
+  made.shape = ParseShape("sphere:0.04");
+  const Grasp common = Learn(made, 3);
+  LearnOptions options;
+  options.hand_length = 0.165;
+  const Grasp small = Learn(made, 3, options);
+  const double factor = 0.165 / common.hand_length;
+  EXPECT_NEAR(small.tip_radius, factor * common.tip_radius, 1e-12);
+  ASSERT_EQ(small.edges.size(), common.edges.size());
+  for (std::size_t i = 0; i < common.edges.size(); ++i) {
+    EXPECT_NEAR(small.edges[i].rest_length, factor * common.edges[i].rest_length, 1e-9);
+  }
+}
+
 struct Observed {
   std::string type, shape;
   double tip_noise, hand_noise, hand_angle, missing;

@@ -52,6 +52,28 @@ TEST(HandMappingTest, TheOpenHumanHandIsTheOpenRobotHand) {
   EXPECT_LT((result.q - robot.open).cwiseAbs().maxCoeff(), 0.1) << result.q.transpose();
 }
 
+TEST(HandMappingTest, TheSamePostureOfAnyHandLengthIsTheSameTarget) {
+  const RobotHand& robot = TestRobotHand();
+  const HumanHand& common = TestHumanHand();
+  RandomEngine engine = MakeStream(1, 0, "scaled");
+  for (const double factor : {0.8, 1.1}) {
+    const HumanHand other = ScaledHand(common, factor);
+    const Eigen::VectorXd q = HumanPosture(common, 0.4, &engine);
+    std::vector<Pose> X_common, X_other;
+    ForwardKinematics(common.tree, q, X_common);
+    ForwardKinematics(other.tree, q, X_other);
+    const MappingTarget a = TargetFromHuman(common, q, robot), b = TargetFromHuman(other, q, robot);
+    for (int f = 0; f < kNumFingers; ++f) {
+      EXPECT_LT((FramePose(other.tree, X_other, other.tip[f]).translation() -
+                 factor * FramePose(common.tree, X_common, common.tip[f]).translation())
+                    .norm(),
+                1e-12);
+      EXPECT_LT((a.p_HF[f] - b.p_HF[f]).norm(), 1e-12) << kFingerNames[f];
+      EXPECT_EQ(a.sigma[f], b.sigma[f]);
+    }
+  }
+}
+
 TEST(HandMappingTest, ClosingTheHumanHandClosesEveryRobotFinger) {
   const RobotHand& robot = TestRobotHand();
   Eigen::VectorXd previous;

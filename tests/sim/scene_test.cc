@@ -37,6 +37,10 @@ TEST(SceneTest, EveryKeyIsRead) {
   EXPECT_EQ(s.demonstrator.type, "power");
   EXPECT_FALSE(s.demonstrator.object_visible);
   EXPECT_EQ(s.demonstrator.object->size.x(), 0.06);
+  EXPECT_EQ(s.demonstrator.hand_length, 0.18);
+  EXPECT_EQ(s.demonstrator.cap_diameter, 0.022);
+  EXPECT_EQ(s.demonstrator.cap_colour, Eigen::Vector3d(0.1, 0.2, 0.9));
+  EXPECT_EQ(s.demonstrator.skin_colour, Eigen::Vector3d(0.5, 0.35, 0.3));
   EXPECT_EQ(s.physics.noslip_iterations, 3);
   EXPECT_EQ(s.max_finger_force, 6);
   EXPECT_EQ(s.lights.size(), 1u);
@@ -69,6 +73,32 @@ TEST(SceneTest, ErrorsNameFileLineAndWhatIsValid) {
   EXPECT_THAT(MessageOf("objects:\n  - {name: a, shape: sphere:0.04, pose: [0, 0.5]}\n"
                         "  - {name: a, shape: sphere:0.04, pose: [0, 0.6]}\n"),
               HasSubstr("a second object is named 'a'"));
+}
+
+TEST(SceneTest, LookOfTheDemonstratorIsThatOfTheModelUnlessGiven) {
+  const Scene s = ParseScene("demonstrator: {hand_length: 0.2}\n", "s.yaml");
+  EXPECT_FALSE(s.demonstrator.cap_diameter);
+  EXPECT_FALSE(s.demonstrator.cap_colour);
+  EXPECT_FALSE(s.demonstrator.skin_colour);
+}
+
+TEST(SceneTest, CapsAndSkinOutOfRangeAreErrorsWithFileAndLine) {
+  const auto demonstrator = [](const std::string& key) {
+    return MessageOf("demonstrator:\n  type: pinch\n  " + key + "\n");
+  };
+  EXPECT_THAT(demonstrator("cap_diameter: 0.2"),
+              AllOf(HasSubstr("scene.yaml:3"), HasSubstr("cap_diameter"), HasSubstr("0.03")));
+  EXPECT_THAT(demonstrator("cap_diameter: green"),
+              AllOf(HasSubstr("scene.yaml:3"), HasSubstr("cap_diameter")));
+  EXPECT_THAT(demonstrator("cap_colour: [0, 255, 0]"),
+              AllOf(HasSubstr("scene.yaml:3"), HasSubstr("cap_colour"), HasSubstr("255")));
+  EXPECT_THAT(demonstrator("cap_colour: [0.5, 0.5, 0.5]"),
+              AllOf(HasSubstr("scene.yaml:3"), HasSubstr("a bright colour with a hue")));
+  EXPECT_THAT(demonstrator("cap_colour: [0, 0.1, 0]"), HasSubstr("a bright colour with a hue"));
+  EXPECT_THAT(demonstrator("skin_colour: [0.5, 0.4]"),
+              AllOf(HasSubstr("scene.yaml:3"), HasSubstr("skin_colour")));
+  EXPECT_THAT(demonstrator("hand_length: 0.5"),
+              AllOf(HasSubstr("scene.yaml:3"), HasSubstr("hand_length"), HasSubstr("0.3")));
 }
 
 TEST(SceneTest, RestingObjectsStandOnTheTable) {

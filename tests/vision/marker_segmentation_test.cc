@@ -113,6 +113,14 @@ TEST(MarkerColourTest, TheHueOfTheCapsIsFoundInThePicture) {
   EXPECT_FALSE(FindMarkerHue(DrawCapsules(eyes.left, {}), {}));
 }
 
+TEST(MarkerColourTest, HueRunsFromRedOverGreenAndBlueBackToRed) {
+  EXPECT_NEAR(HueDeg({0.8, 0, 0}), 0, 1e-9);
+  EXPECT_NEAR(HueDeg({0.5, 0.5, 0}), 60, 1e-9);
+  EXPECT_NEAR(HueDeg({0.1, 0.9, 0.1}), 120, 1e-9);
+  EXPECT_NEAR(HueDeg({0, 0, 255}), 240, 1e-9);
+  EXPECT_NEAR(HueDeg({1, 0, 0.5}), 330, 1e-9);
+}
+
 TEST(MarkerColourTest, ChromaIsLinearInTheShareOfCap) {
   const MarkerColour colour = MakeMarkerColour({});
   const std::uint8_t cap[3] = {20, 160, 20}, grey[3] = {90, 90, 90}, half[3] = {55, 125, 55};
