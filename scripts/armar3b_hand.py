@@ -139,12 +139,18 @@ def add_sensors(sensors, side, opposition):
 
 
 # Postures as joint angles, rad: palm, opposition of the variant's thumb, thumb (j0, j1), index, middle, and one angle for
-# the four joints of ring and pinkie (one pressure). The pinch leaves 40 mm between the pads of thumb and index.
+# the four joints of ring and pinkie (one pressure). The pinch and tripod leave
+# 40 mm between the pads.
 POSTURES = {
     "open": (0, 0, (0, 0), (0, 0), (0, 0), 0),
-    "power": (0.2, 0, (0.35, 0.35), (0.75, 0.85), (0.75, 0.85), 0.8),
+    "power": (0.2, 0, (0.4, 0.3), (0.55, 0.75), (0.55, 0.75), 0.65),
     "pinch": (0.1, 0, (0.9, 0.05), (0.35, 0.45), (0.1, 0.1), 1.2),
     "pinch with opposition": (0.1, 0.17, (0.4, 0.4), (0.8, 0.15), (0.1, 0.1), 1.2),
+    "tripod": (0.1, 0, (0.9, 0.05), (0.35, 0.45), (0.35, 0.45), 1.2),
+    "tripod with opposition": (0.1, 0, (0.4, 0.4), (0.8, 0.15), (0.8, 0.15), 1.2),
+    # the documented thumb cannot come beside the index: it lies over the bent fingers' ends
+    "lateral": (0, 0, (0.3, 0.5), (1.0, 1.2), (1.0, 1.2), 1.1),
+    "lateral with opposition": (0, 0.6, (0.85, 0.85), (0.6, 1.1), (0.7, 1.15), 1.0),
 }
 
 

@@ -38,14 +38,14 @@ def collision_of(body):
     return COLLISION.get(body.replace("_l_", "_r_"))
 
 
+_GAZE = (0, 0, 0, 0, 0, 0, -0.35, 0.25, 0, 0)      # torso, neck, head, eyes: at the hands
+_FORWARD = (-0.2, 0.2, 0.0, -0.1, 1.3, 0.0, 0.0)  # arm: forearm level, palm inwards
 POSTURES = {  # name: torso 3, neck and head 4, eyes 3; right arm 7 (the left mirrors it); posture of the hands
     "home": ((0,) * 10, (0,) * 7, "open"),
-    "ready": ((0, 0, 0, 0, 0, 0, -0.35, 0.25, 0, 0), (-0.2, 0.2, 0.0, -0.1, 1.3, 0.0, 0.0), "open"),
+    "ready": (_GAZE, _FORWARD, "open"),
     "look_at_table": ((0, 0, 0, -0.35, 0, 0, -0.5, 0.35, 0, 0), (0.25, 0.25, 0, -0.35, 0.9, 0, 0), "open"),
     "arms_out": ((0,) * 10, (0, 0.9, 0, 0, 0.8, 0, 0), "open"),
-    "hand_open": ((0, 0, 0, 0, 0, 0, -0.35, 0.25, 0, 0), (-0.2, 0.2, 0.0, -0.1, 1.3, 0.0, 0.0), "open"),
-    "hand_power": ((0, 0, 0, 0, 0, 0, -0.35, 0.25, 0, 0), (-0.2, 0.2, 0.0, -0.1, 1.3, 0.0, 0.0), "power"),
-    "hand_pinch": ((0, 0, 0, 0, 0, 0, -0.35, 0.25, 0, 0), (-0.2, 0.2, 0.0, -0.1, 1.3, 0.0, 0.0), "pinch"),
+    **{f"hand_{name}": (_GAZE, _FORWARD, name) for name in ("open", "power", "pinch", "tripod", "lateral")},
 }
 ARM_MIRROR = (1, -1, -1, 1, -1, -1, 1)  # of the seven joint angles, right to left
 
@@ -122,16 +122,16 @@ IN_BODY_FRAME = {
     "eye_r_pan": _EYE,
     "arm_r_shoulder1": [_ball("shell", (0.004, 0, 0.030), (0.068, 0.070, 0.062)),
                         _rod("cover", "cylinder", (0, 0, 0.070), (0, 0, 0.100), 0.045)],
-    "arm_r_shoulder2": [_ball("metal", (0.0095, 0.0222, 0), (0.050, 0.052, 0.050))],
+    "arm_r_shoulder2": [_ball("cover", (0.0095, 0.0222, 0), (0.050, 0.052, 0.050))],
     "arm_r_upperarm": [
         _rod("cover", "cylinder", (0, 0, -0.050), (0, 0, -0.085), 0.046),
         _rod("shell", "capsule", (0.001, 0, -0.115), (0.001, 0, -0.225), 0.046),
         _rod("cover", "cylinder", (0.003, 0, -0.245), (0.004, 0, -0.262), 0.042),
         _rod("metal", "capsule", (0.005, 0, -0.255), (0.018, 0, -0.300), 0.030),
     ],
-    "arm_r_elbow": [_rod("metal", "cylinder", (0, 0, -0.030), (0, 0, 0.046), 0.036),
-                    _rod("cover", "cylinder", (0, 0, 0.046), (0, 0, 0.050), 0.030),
-                    _rod("cover", "cylinder", (0, 0, -0.034), (0, 0, -0.030), 0.030)],
+    "arm_r_elbow": [_rod("cover", "cylinder", (0, 0, -0.030), (0, 0, 0.046), 0.036),
+                    _rod("shell", "cylinder", (0, 0, 0.046), (0, 0, 0.050), 0.030),
+                    _rod("shell", "cylinder", (0, 0, -0.034), (0, 0, -0.030), 0.030)],
     "arm_r_underarm": [
         _rod("cover", "cylinder", (0, 0, -0.030), (0, 0, -0.065), 0.038),
         _rod("shell", "capsule", (-0.001, 0.001, -0.090), (-0.001, 0.001, -0.165), 0.045),

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "base/error.h"
 #include "base/files.h"
 #include "experiment/trajectory_csv.h"
 #include "render/camera_renderer.h"
@@ -17,12 +19,16 @@ namespace {
 
 constexpr double kVideoFps = 25;
 
-// Films a trial, the scene's overview cameras side by side.
+// Films a trial, the scene's overview cameras side by side. It has a model of its own, with looks,
+// so that a filmed trial is the same to the bit as one that is not.
 class Filmer {
  public:
   Filmer(const Simulation& simulation, const Scene& scene, const PerformGraspOptions& options)
-      : renderer_(simulation.model(), RenderOptions::Pretty(640, 480)),
+      : model_(BuildModel(scene)),
+        data_(MakeData(*model_)),
+        renderer_(*model_, RenderOptions::Pretty(640, 480)),
         writer_(options.video, kVideoFps) {
+    ThrowUnless(model_->nq == simulation.model().nq, "the filmed model has other joints");
     if (!options.camera.empty()) {
       cameras_ = {options.camera};
     } else {
@@ -35,9 +41,13 @@ class Filmer {
   void Look(const Simulation& simulation, Phase phase) {
     if (simulation.time() < next_) return;
     next_ += 1 / kVideoFps;
+    std::copy_n(simulation.data().qpos, model_->nq, data_->qpos);
+    mj_kinematics(model_.get(), data_.get());
+    mj_comPos(model_.get(), data_.get());
+    mj_camlight(model_.get(), data_.get());
     std::vector<cv::Mat> views;
     for (const std::string& camera : cameras_) {
-      views.push_back(renderer_.Bgr(simulation.data(), CameraView::Named(camera)));
+      views.push_back(renderer_.Bgr(*data_, CameraView::Named(camera)));
     }
     cv::Mat frame;
     cv::hconcat(views, frame);
@@ -48,6 +58,8 @@ class Filmer {
   void Finish() { writer_.Finish(); }
 
  private:
+  ModelPtr model_;
+  DataPtr data_;
   CameraRenderer renderer_;
   VideoWriter writer_;
   std::vector<std::string> cameras_;
@@ -107,7 +119,9 @@ void RecordPerformance(const Performance& p, const std::string& type, const Perf
 TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
                          const PerformGraspOptions& options) {
   TrialResult result;
-  Simulation simulation(BuildModel(scene));
+  BuildOptions build;
+  build.with_looks = false;
+  Simulation simulation(BuildModel(scene, build));
   const RobotIo robot(simulation.model());
   const RobotBody body = MakeRobotBody(simulation);
   const Pose X_WO = ObjectStartPose(scene, 0);

@@ -237,9 +237,11 @@ std::vector<CameraRenderer::Visibility> CameraRenderer::CountVisible(
   return counts;
 }
 
-cv::Mat PictureOf(const mjModel& model, int width, int height, const std::string& camera) {
+cv::Mat PictureOf(const mjModel& model, int width, int height, const std::string& camera,
+                  const std::string& keyframe) {
   const DataPtr data = MakeData(model);
-  if (model.nkey > 0) mj_resetDataKeyframe(&model, data.get(), 0);
+  const int key = keyframe.empty() ? 0 : IdOf(model, mjOBJ_KEY, keyframe);
+  if (model.nkey > 0) mj_resetDataKeyframe(&model, data.get(), key);
   mj_forward(&model, data.get());
   CameraView view = CameraView::Named(camera);
   // An inspected file may allow only small pictures; the copy shares everything else.

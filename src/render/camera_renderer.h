@@ -75,8 +75,9 @@ class CameraRenderer {
   std::unique_ptr<Impl> impl_;
 };
 
-// One picture of the whole model at the start keyframe (or all zero), from a view that holds it.
+// One picture of the whole model, from a view that holds it or by a camera, at the named keyframe
+// (empty: the first, or all zero). Throws Error for unknown names.
 cv::Mat PictureOf(const mjModel& model, int width = 960, int height = 720,
-                  const std::string& camera = "");
+                  const std::string& camera = "", const std::string& keyframe = "");
 
 }  // namespace springgrasp

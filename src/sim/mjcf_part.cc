@@ -235,6 +235,14 @@ void PrefixNames(XmlDocument& part, const std::string& prefix) {
   });
 }
 
+void DropLooks(XmlDocument& part) {
+  XmlElement* world = part.FirstChildElement("mujoco")->FirstChildElement("worldbody");
+  ForEach(world, [](XmlElement* e) {
+    DropChildren(e,
+                 [](XmlElement* c) { return Is(c, "geom") && Attribute(c, "class") == "visual"; });
+  });
+}
+
 void FreezeJoints(XmlDocument& part, const mjModel& model,
                   const std::map<std::string, double>& positions) {
   if (positions.empty()) return;

@@ -22,6 +22,10 @@ std::unique_ptr<XmlDocument> ReadMjcfPart(const std::string& path, const std::st
 // with the same names, or one part twice, can be merged into one scene.
 void PrefixNames(XmlDocument& part, const std::string& prefix);
 
+// Removes the geoms of class "visual": nothing of them collides or weighs, but the engine's broad
+// phase and kinematics pay for each.
+void DropLooks(XmlDocument& part);
+
 // Removes joints and turns their bodies to where the joints stood. Actuators, sensors, tendons and
 // equalities on them go too. `model` is the compiled whole file, from which axes and anchors are
 // taken. Pairs of neighbours that MuJoCo would no longer exempt from collision, because one of

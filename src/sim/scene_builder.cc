@@ -52,7 +52,7 @@ std::string RobotPath(const Scene& scene) {
   return variant;
 }
 
-void AddRobot(const Scene& scene, XmlDocument& document) {
+void AddRobot(const Scene& scene, bool with_looks, XmlDocument& document) {
   const std::string path = RobotPath(scene);
   const ModelPtr robot = LoadModelFile(path);
   CheckStartNames(scene, *robot);
@@ -62,6 +62,7 @@ void AddRobot(const Scene& scene, XmlDocument& document) {
     if (!IsActive(scene, name)) frozen[name] = StartPosition(scene, *robot, j);
   }
   const std::unique_ptr<XmlDocument> part = ReadMjcfPart(path, "robot");
+  if (!with_looks) DropLooks(*part);
   FreezeJoints(*part, *robot, frozen);
   MergeMjcfPart(*part, document);
 }
@@ -148,7 +149,7 @@ std::string BuildMjcf(const Scene& scene, const BuildOptions& options) {
   document.InsertFirstChild(root);
   root->SetAttribute("model", "scene");
   AddSettings(scene, options.offscreen_samples, root);
-  if (options.with_robot) AddRobot(scene, document);
+  if (options.with_robot) AddRobot(scene, options.with_looks, document);
   if (options.with_demonstrator) AddDemonstrator(scene, options, document);
   AddSurroundings(scene, root);
   if (options.with_table) AddTable(scene, root);

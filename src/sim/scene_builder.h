@@ -20,6 +20,8 @@ struct BuildOptions {
   std::string demonstrator_model = "mmm_hand/mmm_hand_r.xml";
   // The demonstrator's object as a visual mocap body "shown_object" (its shape below).
   std::optional<Shape> shown_object;
+  // The robot's looks; without them physics is the same and steps are faster.
+  bool with_looks = true;
   int offscreen_samples = 0;  // multisampling, compiled into the model; 4 for videos
 };
 

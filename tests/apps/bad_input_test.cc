@@ -117,6 +117,14 @@ TEST_F(BadInputTest, EmptyFiles) {
   ExpectRefused("springgrasp inspect e.xml", "e.xml");
 }
 
+TEST_F(BadInputTest, NamesThatAModelLacks) {
+  const std::string hand = SourceFolder() + "/models/mmm_hand/mmm_hand_r.xml";
+  const std::string robot = SourceFolder() + "/models/armar3b/armar3b.xml";
+  ExpectRefused("springgrasp inspect " + hand + " --drives d.csv", "needs a model with valves");
+  ExpectRefused("springgrasp inspect " + robot + " --keyframe waving -o p.png", "waving");
+  ExpectRefused("springgrasp inspect " + robot + " --camera eye_m -o p.png", "eye_m");
+}
+
 TEST_F(BadInputTest, MalformedYaml) {
   Write("m.yaml", "objects:\n  - {name: ball\n");
   ExpectRefused("springgrasp run m.yaml -o out", "malformed YAML");

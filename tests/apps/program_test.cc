@@ -95,6 +95,23 @@ TEST(ProgramTest, StatusExportAndCheckReadResults) {
   EXPECT_THAT(failed.out, HasSubstr("FAILED"));
 }
 
+TEST(ProgramTest, InspectCountsTheRobotAndMeasuresItsDrives) {
+  const TemporaryFolder folder;
+  const std::string robot = SourceFolder() + "/models/armar3b/armar3b.xml";
+  const ProgramResult whole = RunProgram("springgrasp inspect " + robot, folder / ".");
+  EXPECT_EQ(whole.exit_code, 0) << whole.err;
+  EXPECT_THAT(whole.out, HasSubstr("49 joints (49 degrees of freedom, 43 of them actuated)"));
+  EXPECT_THAT(whole.out, HasSubstr("4 cameras, 179.973 kg"));
+  EXPECT_THAT(whole.out, HasSubstr("right_arm     7 joints,  7 actuators   12.4294 kg"));
+  EXPECT_THAT(whole.out, HasSubstr("right_hand   11 joints,  8 actuators    0.4500 kg"));
+  EXPECT_THAT(whole.out, HasSubstr("left_hand    11 joints,  8 actuators    0.4500 kg"));
+  folder.Write("hand.yaml", "active: [right_hand]\n");
+  const ProgramResult drives =
+      RunProgram("springgrasp inspect hand.yaml --drives drives.csv", folder / ".");
+  EXPECT_EQ(drives.exit_code, 0) << drives.err;
+  EXPECT_THAT(ReadFile(folder / "drives.csv"), HasSubstr("\nhand_r_ring_pinkie,"));
+}
+
 TEST(ProgramTest, ModelChecksACase) {
   const TemporaryFolder folder;
   const std::string model_case = SPRINGGRASP_TESTDATA_DIR "/model_case.json";

@@ -1,0 +1,57 @@
+#include "experiment/perform_grasp.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "base/files.h"
+
+namespace springgrasp {
+namespace {
+
+// The shipped pinch on a ball, its pose as the scene says.
+struct Trial {
+  Grasp grasp = ReadGrasp(SourceFolder() + "/experiments/first_grasps/pinch.yaml");
+  Scene scene = ReadScene(SourceFolder() + "/scenes/pinch_ball.yaml");
+  PerformGraspOptions options;
+  TrialResult Run() const { return PerformGrasp(grasp, scene, options); }
+};
+
+TEST(PerformGraspTest, AFilmedTrialIsTheSameToTheBit) {
+  const TrialResult plain = Trial().Run();
+  Trial filmed;
+  const std::string video = std::filesystem::temp_directory_path() / "springgrasp_filmed.mp4";
+  filmed.options.video = video;
+  filmed.options.camera = "close";
+  const TrialResult seen = filmed.Run();
+  EXPECT_GT(std::filesystem::file_size(video), 10000u);
+  std::filesystem::remove(video);
+  EXPECT_EQ(plain.outcome, seen.outcome);
+  EXPECT_GT(plain.values.size(), 20u);
+  EXPECT_EQ(plain.values, seen.values);
+}
+
+TEST(PerformGraspTest, TheHandWithAnOppositionJointRunsTheSameChain) {
+  Trial trial;
+  trial.scene.hand = "opposition";
+  const TrialResult result = trial.Run();
+  EXPECT_NE(result.outcome, Outcome::kError) << result.message;
+  EXPECT_NE(result.outcome, Outcome::kDiverged) << result.message;
+  EXPECT_NE(result.outcome, Outcome::kUnreachable) << result.message;
+}
+
+TEST(PerformGraspTest, SensorNoiseFollowsTheActuationStream) {
+  const auto run = [](std::uint64_t seed) {
+    Trial trial;
+    trial.scene.pneumatics.pressure_noise = 0.02;
+    trial.scene.pneumatics.angle_noise = 0.002;
+    trial.options.actuation = MakeStream(seed, 0, "actuation");
+    return trial.Run().values;
+  };
+  const auto first = run(1);
+  EXPECT_EQ(first, run(1));
+  EXPECT_NE(first, run(2));
+}
+
+}  // namespace
+}  // namespace springgrasp
