@@ -52,6 +52,27 @@ TEST(HandMappingTest, TheOpenHumanHandIsTheOpenRobotHand) {
   EXPECT_LT((result.q - robot.open).cwiseAbs().maxCoeff(), 0.1) << result.q.transpose();
 }
 
+// A lateral human thumb lies beside the index, which only the hand with the joint can follow.
+TEST(HandMappingTest, AThumbThatTurnsFollowsTheHumanOpposition) {
+  const HumanHand& human = TestHumanHand();
+  const RobotHand& robot = TestOppositionHand();
+  ASSERT_EQ(robot.opposition, 11);
+  EXPECT_EQ(robot.valves[1], std::vector<int>{11});
+  EXPECT_EQ(robot.valves[2], (std::vector<int>{1, 2}));
+  EXPECT_EQ(TestRobotHand().opposition, -1);
+  Eigen::VectorXd q = human.rest;
+  double last = 10;
+  for (const double opposition : {0.3, 0.9, 1.5}) {
+    q[human.joints[kThumb][0]] = opposition;
+    const MappingTarget target = TargetFromHuman(human, q, robot);
+    EXPECT_NEAR(target.opposition, std::numbers::pi / 2 - opposition, 1e-12);
+    const MappingResult result = MapHand(robot, target);
+    EXPECT_LT(result.q[robot.opposition], last);
+    last = result.q[robot.opposition];
+    EXPECT_NEAR(last, target.opposition, 0.5);
+  }
+}
+
 TEST(HandMappingTest, TheSamePostureOfAnyHandLengthIsTheSameTarget) {
   const RobotHand& robot = TestRobotHand();
   const HumanHand& common = TestHumanHand();

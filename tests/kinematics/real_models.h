@@ -39,6 +39,14 @@ inline const RobotHand& TestRobotHand() {
   return hand;
 }
 
+inline const RobotHand& TestOppositionHand() {
+  static const RobotHand hand = [] {
+    const auto model = LoadModel("armar3b/armar3b_opposition.xml");
+    return MakeArmarHand(KinematicTreeOf(*model, "hand_r"), "hand_r");
+  }();
+  return hand;
+}
+
 inline Eigen::VectorXd RandomPosture(const KinematicTree& tree, RandomEngine& engine) {
   Eigen::VectorXd q(tree.num_joints());
   for (int j = 0; j < q.size(); ++j) q[j] = Uniform(engine, tree.lower[j], tree.upper[j]);
