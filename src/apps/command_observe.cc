@@ -1,10 +1,11 @@
-// springgrasp observe: the simulated demonstrator before the robot's eyes, tracked.
+// springgrasp observe: the simulated demonstrator before the robot's eyes, or recorded video.
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <memory>
 
 #include "apps/command.h"
+#include "apps/observe_recorded.h"
 #include "base/error.h"
 #include "experiment/observe.h"
 #include "experiment/table.h"
@@ -17,7 +18,30 @@ struct Options {
   std::uint64_t seed = 1;
   double fps = 0;
   double noise = 0;
+  ObserveRecordedOptions recorded;
+  bool recorded_only = false;  // an option of recorded video was given
 };
+
+int RunRecorded(Options options) {
+  ObserveRecordedOptions& recorded = options.recorded;
+  const std::pair<const char*, const std::string*> needed[] = {
+      {"--left", &recorded.left},
+      {"--right", &recorded.right},
+      {"--intrinsics", &recorded.intrinsics},
+      {"--extrinsics", &recorded.extrinsics}};
+  for (const auto& [name, value] : needed) {
+    ThrowUnless(!value->empty(), "observe on recorded video needs {} too", name);
+  }
+  ThrowUnless(options.truth.empty() && options.frames.empty() && options.noise == 0,
+              "--truth, --save-frames and --noise are for a scene, not for recorded video");
+  for (const std::string& path : {options.output, options.overlay}) CheckOutputPath(path);
+  recorded.output = options.output;
+  recorded.overlay = options.overlay;
+  recorded.fps = options.fps;
+  recorded.seed = options.seed;
+  ObserveRecorded(recorded);
+  return kDone;
+}
 
 void Print(const Observation& observation) {
   const ObservationErrors& errors = observation.errors;
@@ -38,6 +62,14 @@ void Print(const Observation& observation) {
 }
 
 int RunObserve(const Options& options) {
+  const bool recorded = !options.recorded.left.empty() || !options.recorded.right.empty() ||
+                        !options.recorded.intrinsics.empty() ||
+                        !options.recorded.extrinsics.empty();
+  ThrowUnless(recorded != !options.scene.empty(),
+              "observe takes either a scene or --left, --right, --intrinsics and --extrinsics");
+  if (recorded) return RunRecorded(options);
+  ThrowUnless(!options.recorded_only,
+              "--camera-pose and --marker-hue are for recorded video, not for a scene");
   for (const std::string& path : {options.output, options.overlay, options.truth}) {
     CheckOutputPath(path);
   }
@@ -64,22 +96,35 @@ int RunObserve(const Options& options) {
 
 void AddObserveCommand(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      AddCommand(app, "observe",
-                 "Shows a demonstration to the robot's wide-angle stereo cameras and tracks it.",
-                 "scenes/pinch_ball.yaml -o out/pinch.csv --overlay out/pinch.mp4");
-  command->add_option("scene", options->scene, "scene YAML with a demonstrator")->required();
+  CLI::App* command = AddCommand(
+      app, "observe",
+      "Tracks a demonstration before the robot's wide-angle cameras, or on recorded stereo video.",
+      "scenes/pinch_ball.yaml -o out/pinch.csv --overlay out/pinch.mp4");
+  command->add_option("scene", options->scene, "scene YAML with a demonstrator");
+  ObserveRecordedOptions& recorded = options->recorded;
+  command->add_option("--left", recorded.left, "recorded video or image pattern, left camera");
+  command->add_option("--right", recorded.right, "the same of the right camera");
+  command->add_option("--intrinsics", recorded.intrinsics, "M1 D1 M2 D2, as stereo_calib writes");
+  command->add_option("--extrinsics", recorded.extrinsics, "R T (metres), likewise");
+  CLI::Option* pose = command->add_option("--camera-pose", recorded.camera_pose,
+                                          "\"x y z qw qx qy qz\" of the left camera in the world");
+  CLI::Option* hue = command->add_option("--marker-hue", recorded.marker_hue,
+                                         "of the caps, degrees (0 red, 120 green), or auto");
   command->add_option("-o,--output", options->output, "demonstration CSV: what was tracked")
       ->required();
   command->add_option("--truth", options->truth, "demonstration CSV: what was shown");
   command->add_option("--overlay", options->overlay, "video of the tracking (.mp4)");
   command->add_option("--save-frames", options->frames, "folder for the pictures of both eyes");
-  command->add_option("--fps", options->fps, "frames per second (default: the scene's)")
+  command
+      ->add_option("--fps", options->fps, "frames per second (default: the scene's, the video's)")
       ->check(CLI::Range(5.0, 1000.0));
   command->add_option("--noise", options->noise, "deviation of the grey values, 0 to 255")
       ->check(CLI::Range(0.0, 255.0));
   command->add_option("--seed", options->seed, "of the random streams")->capture_default_str();
-  command->callback([options, &exit_code] { exit_code = RunObserve(*options); });
+  command->callback([options, pose, hue, &exit_code] {
+    options->recorded_only = pose->count() + hue->count() > 0;
+    exit_code = RunObserve(*options);
+  });
 }
 
 }  // namespace springgrasp

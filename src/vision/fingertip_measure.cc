@@ -43,7 +43,7 @@ TrackedFrame FingertipTracker::Impl::Measure(const std::array<const cv::Mat*, 2>
     out.p_W = point->p_WQ;
     out.axis_W = fingers[f].axis_W;
     double agreement = 1;
-    if (options.fit_outlines) {
+    if (options.kind == TrackerKind::kOutline) {
       std::array<CapContour, 2> contours;
       for (int v = 0; v < 2; ++v) {
         const double r = RadiusPx(v, *out.p_W);

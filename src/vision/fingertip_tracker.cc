@@ -241,7 +241,7 @@ TrackedFrame FingertipTracker::Update(const cv::Mat& left, const cv::Mat& right,
 bool FingertipTracker::started() const { return impl_->started; }
 
 void FingertipTracker::SetHint(const HandModel& model, const HandFit& fit) {
-  if (!fit.has_orientation) return;
+  if (!fit.has_orientation || impl_->options.kind == TrackerKind::kPaper) return;
   // The palm's middle lies half way from the wrist to the knuckles, 4 cm along x.
   impl_->p_WPalm = fit.X_WH * Eigen::Vector3d(0.045 * fit.scale, 0, 0);
   for (int f = 0; f < kNumFingers; ++f) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <string_view>
 
 #include "base/fingers.h"
 #include "base/random.h"
@@ -21,12 +22,17 @@
 
 namespace springgrasp {
 
+// kPaper: section III-B and no more, fingertips are the triangulated regions, followed on their own.
+// kOutline: positions by the outline fit, and what the fit of the whole hand says is used.
+enum class TrackerKind { kOutline, kPaper };
+inline constexpr std::array<std::string_view, 2> kTrackerKinds = {"outline", "paper"};
+
 struct TrackerOptions {
+  TrackerKind kind = TrackerKind::kOutline;
   CapShape cap;  // radius 0: found in the first frame
   MarkerColourOptions colour;
   Handedness hand = Handedness::kRight;  // that shows its palm
   ParticleOptions particles;
-  bool fit_outlines = true;     // false: triangulated centroids, as in the paper
   double max_epipolar_px = 3;   // beyond: the two regions are not the same cap
   double min_mass = 0.25;       // cap pixels over those expected; below: lost
   double min_similarity = 0.6;  // Bhattacharyya with the model; below: lost
