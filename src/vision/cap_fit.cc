@@ -22,6 +22,17 @@ Eigen::Vector3f ColourAt(const cv::Mat& bgr, const Eigen::Vector2d& place) {
   return colour;
 }
 
+// Directions of the rays, even about the circle.
+using Rays = std::array<std::array<double, 2>, kContourRays>;
+const Rays kRays = [] {
+  Rays rays;
+  for (int k = 0; k < kContourRays; ++k) {
+    const double angle = 2 * std::numbers::pi * k / kContourRays;
+    rays[k] = {std::cos(angle), std::sin(angle)};
+  }
+  return rays;
+}();
+
 // A capsule in a picture: segment between two pixels with a radius at each end.
 struct ImageCapsule {
   Eigen::Vector2d end[2];
@@ -64,45 +75,46 @@ CapContour TraceCap(const cv::Mat& bgr, const MarkerColour& colour, const Eigen:
   const auto in_picture = [&](const Eigen::Vector2d& p) {
     return p.x() >= 0 && p.y() >= 0 && p.x() < bgr.cols - 1 && p.y() < bgr.rows - 1;
   };
-  // Purity: chroma over brightness, which shading leaves alone.
-  const auto purity = [&](const Eigen::Vector3f& c) {
-    return colour.chroma.dot(c) / (c.sum() + 12.0F);
-  };
-  constexpr double kStep = 0.5;  // px
-  constexpr int kMaxSamples = 96;
-  std::array<Eigen::Vector3f, kMaxSamples> profile;
-  const int wanted = std::min(kMaxSamples, static_cast<int>(reach_px / kStep) + 1);
+  // Purity: chroma over brightness, which shading leaves alone. First along whole pixels.
+  constexpr int kMaxWalk = 64;  // px
+  constexpr double kStep = 0.5;  // px, of the profile across the edge
+  const int wanted = std::min(kMaxWalk, static_cast<int>(reach_px) + 1);
+  std::array<Eigen::Vector3f, 10> profile;
   for (int k = 0; k < kContourRays; ++k) {
-    const double angle = 2 * std::numbers::pi * k / kContourRays;
-    const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
-    // Walk outwards until the colour has left for one and a half pixels.
-    int n = 0, edge = -1, outside = 0;
+    const Eigen::Vector2d direction(kRays[k][0], kRays[k][1]);
+    // Walk outwards until the colour has left for three pixels.
+    int edge = -1, outside = 0;
     float full = 0;
-    for (; n < wanted; ++n) {
-      const Eigen::Vector2d at = inside + n * kStep * direction;
+    for (int n = 0; n < wanted; ++n) {
+      const Eigen::Vector2d at = inside + n * direction;
       if (!in_picture(at)) break;
-      profile[n] = ColourAt(bgr, at);
-      const float pure = purity(profile[n]);
-      full = std::max(full, pure);
-      if (pure < 0.5F * full) {
+      const std::uint8_t* pixel =
+          bgr.ptr(static_cast<int>(at.y() + 0.5)) + 3 * static_cast<int>(at.x() + 0.5);
+      const float chroma = colour.Chroma(pixel);
+      const auto sum = static_cast<float>(pixel[0] + pixel[1] + pixel[2] + 12);
+      if (chroma > full * sum) full = chroma / sum;
+      if (chroma < 0.5F * full * sum) {
         if (outside++ == 0) edge = n;
       } else {
         outside = 0;
       }
-      if (outside >= 6) break;
+      if (outside >= 3) break;
     }
-    if (outside < 6 || edge < 3 || full < 0.08F) continue;
+    if (outside < 3 || edge < 2 || full < 0.08F) continue;
+    const double first = edge - 2.5;
+    const Eigen::Vector2d ends[2] = {inside + first * direction,
+                                     inside + (first + 9 * kStep) * direction};
+    if (!in_picture(ends[0]) || !in_picture(ends[1])) continue;
+    for (int i = 0; i < 10; ++i) profile[i] = ColourAt(bgr, ends[0] + i * kStep * direction);
     // Unmix: share of cap along the step between the colours either side, integrated.
-    const int first = std::max(0, edge - 4), last = std::min(n, edge + 5);
-    const Eigen::Vector3f cap = profile[first], rest = profile[last];
-    const Eigen::Vector3f step = cap - rest;
+    const Eigen::Vector3f rest = profile[9], step = profile[0] - rest;
     const float scale = step.squaredNorm();
     if (scale < 100) continue;
     double share = 0;
-    for (int i = first; i <= last; ++i) {
-      share += std::clamp((profile[i] - rest).dot(step) / scale, 0.0F, 1.0F);
+    for (const Eigen::Vector3f& sample : profile) {
+      share += std::clamp((sample - rest).dot(step) / scale, 0.0F, 1.0F);
     }
-    contour.point[k] = inside + (first + share - 0.5) * kStep * direction;
+    contour.point[k] = ends[0] + (share - 0.5) * kStep * direction;
     contour.valid[k] = true;
     ++contour.count;
   }

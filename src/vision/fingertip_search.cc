@@ -68,7 +68,14 @@ void FingertipTracker::Impl::DropCollisions() {
         const double r = RadiusPx(v, fingers[f].p_W);
         const double distance = (view.region[f] - view.region[g]).norm();
         // Two halves of one cap are less than a radius apart and together no larger than it.
-        if (distance > 1.5 * r || view.mass[f] + view.mass[g] > kOneCap) continue;
+        if (distance > 1.5 * r) continue;
+        const int front = DepthOf(v, fingers[f].p_W) < DepthOf(v, fingers[g].p_W) ? f : g;
+        const double r_front = RadiusPx(v, fingers[front].p_W);
+        const auto area = [&](int finger) {
+          const double own = RadiusPx(v, fingers[finger].p_W);
+          return view.mass[finger] * own * own / (r_front * r_front);
+        };
+        if (area(f) + area(g) > kOneCap * CapArea(v, front)) continue;
         const Eigen::Vector3d p_WFf = fingers[f].p_W + fingers[f].v_W;
         const Eigen::Vector3d p_WFg = fingers[g].p_W + fingers[g].v_W;
         const double behind = DepthOf(v, p_WFf) - DepthOf(v, p_WFg);

@@ -117,6 +117,7 @@ void FingertipTracker::Impl::Judge(int v) {
 }
 
 void FingertipTracker::Impl::TrackView(int v, const cv::Mat& bgr, RandomEngine& engine) {
+  StageClock clock(times);
   View& view = views[v];
   PerFinger<double> radius;
   double u0 = 1e9, v0 = 1e9, u1 = -1e9, v1 = -1e9;
@@ -133,12 +134,15 @@ void FingertipTracker::Impl::TrackView(int v, const cv::Mat& bgr, RandomEngine& 
   if (view.roi.empty()) view.roi = Whole(v);
   // Bins outside are stale: clear the frame of the region that particles might still touch.
   MapColours(bgr, colour, view.roi, view.likelihood, view.bins);
+  clock.Lap(0);
 
   const Regions previous = view.region;
   PredictParticles(view.motion, options.particles, engine, view.particles);
   WeightParticles(view.bins, colour.model, previous, view.motion, view.active, radius,
                   options.particles, view.particles);
   Regions estimate = MeanRegions(view.particles);
+  ResampleParticles(engine, view.particles);
+  clock.Lap(1);
   // Beside a neighbour the visible parts attract each other's regions: there the estimate is where
   // the point in space should be, moved as the rest of the hand was.
   Eigen::Vector2d common = Eigen::Vector2d::Zero();
@@ -163,12 +167,12 @@ void FingertipTracker::Impl::TrackView(int v, const cv::Mat& bgr, RandomEngine& 
   const MeanShiftResult modes = MeanShift(view.likelihood, estimate, view.active, window);
   for (int f = 0; f < kNumFingers; ++f) view.mass[f] = modes.mass[f];
   view.region = modes.centre;
-  ResampleParticles(engine, view.particles);
   Judge(v);
   for (int f = 0; f < kNumFingers; ++f) {
     if (view.active[f]) continue;
     view.region[f] = previous[f] + view.motion[f];
   }
+  clock.Lap(2);
 }
 
 TrackedFrame FingertipTracker::Impl::Update(const cv::Mat& left, const cv::Mat& right,
@@ -181,9 +185,12 @@ TrackedFrame FingertipTracker::Impl::Update(const cv::Mat& left, const cv::Mat& 
     CheckSize(*pictures[v], v);
     TrackView(v, *pictures[v], engine);
   }
+  StageClock clock(times);
   Search();
   RestoreOrder();
+  clock.Lap(3);
   TrackedFrame frame = Measure(pictures);
+  clock.Lap(4);
   DropShared(frame);
 
   // The hand's common motion carries what is not seen.
@@ -253,6 +260,7 @@ void FingertipTracker::SetHint(const HandModel& model, const HandFit& fit) {
 }
 
 const SkinModel& FingertipTracker::skin() const { return impl_->skin; }
+const TrackerTimes& FingertipTracker::times() const { return impl_->times; }
 const CapShape& FingertipTracker::cap() const { return impl_->cap; }
 const MarkerColour& FingertipTracker::colour() const { return impl_->colour; }
 const ParticleSet& FingertipTracker::particles(int view) const {

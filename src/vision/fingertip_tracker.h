@@ -52,6 +52,17 @@ struct TrackedFrame {
   int num_seen() const;  // fingers with p_W
 };
 
+// What a frame costs, for benchmarks; decides nothing.
+inline constexpr std::array<std::string_view, 5> kTrackerStages = {"colours", "particles", "modes",
+                                                                   "search", "outlines"};
+struct TrackerTimes {
+  std::array<double, kTrackerStages.size()> seconds = {};  // in each stage, since the start
+  TrackerTimes& operator+=(const TrackerTimes& other) {
+    for (std::size_t i = 0; i < seconds.size(); ++i) seconds[i] += other.seconds[i];
+    return *this;
+  }
+};
+
 // Owns the filters' state. Deterministic: all randomness comes from the engine.
 class FingertipTracker {
  public:
@@ -74,7 +85,8 @@ class FingertipTracker {
   const CapShape& cap() const;  // as given or found
   const MarkerColour& colour() const;
   const SkinModel& skin() const;                 // learned in the first frame
-  const ParticleSet& particles(int view) const;  // after the last update, before resampling
+  const ParticleSet& particles(int view) const;  // after the last update
+  const TrackerTimes& times() const;             // of all updates
   // Part of the picture looked at in the last update.
   cv::Rect region_of_interest(int view) const;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -27,12 +28,26 @@ struct View {
   PerFinger<double> similarity = {};  // of the colour
 };
 
-inline constexpr double kOneCap =
-    1.45;  // pixels of one cap seen from the side, over those of a disc
+inline constexpr double kOneCap = 1.2;  // two regions with no more pixels than this share a cap
 inline constexpr int kRadiusFrames = 20;  // over which a cap's size is averaged
 
 inline constexpr double kHintShare = 0.5;     // of the hand fit in a finger's direction
 inline constexpr double kUsualDepth = -0.45;  // of a finger's direction along the optical axis
+
+// Adds the time since the last lap to a stage.
+class StageClock {
+ public:
+  explicit StageClock(TrackerTimes& times) : times_(times) {}
+  void Lap(std::size_t stage) {
+    const auto now = std::chrono::steady_clock::now();
+    times_.seconds[stage] += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  TrackerTimes& times_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
 
 // A finger's state between the views.
 struct FingerState {
@@ -57,6 +72,7 @@ struct FingertipTracker::Impl {
   PerFinger<tracker_internal::FingerState> fingers;
   Eigen::Vector3d p_WPalm = Eigen::Vector3d::Zero();
   std::array<int, 2> turn = {0, 0};
+  TrackerTimes times;
   int disordered_frames = 0;  // for how long both views have seen the fingers out of order
 
   Impl(const StereoCameras& c, const TrackerOptions& o)
@@ -85,6 +101,14 @@ struct FingertipTracker::Impl {
 
   double RadiusPx(int v, const Eigen::Vector3d& p_W) const {
     return cameras.view(v).fx * cap.radius / DepthOf(v, p_W);
+  }
+
+  // Pixels of a whole cap seen along its axis as expected, over those of a disc of its radius.
+  double CapArea(int v, int f) const {
+    const double along = cameras.view(v).X_WC.linear().col(2).dot(fingers[f].axis_W);
+    const double straight = cap.full_length() - 2 * cap.radius;
+    return 1 + 2 * straight * std::sqrt(std::max(0.0, 1 - along * along)) /
+                   (std::numbers::pi * cap.radius);
   }
 
   // The shape of finger f's cap: caps of one kind differ a little in size.

@@ -27,22 +27,22 @@ Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
          (a - std::sin(a)) / (a * a * a) * W * W;
 }
 
-// Distance to the mask and its slope at a pixel, bilinear; beyond the region, to its border too.
-double OutsideDistance(const MaskField& field, const Eigen::Vector2d& pixel,
-                       Eigen::Vector2d& slope) {
-  const Eigen::Vector2d at = field.mask->ToMask(pixel);
-  const double x = std::clamp(at.x(), 0.0, field.outside.cols - 1.001);
-  const double y = std::clamp(at.y(), 0.0, field.outside.rows - 1.001);
+// A distance field of a mask and its slope at a pixel, bilinear; beyond the region, to its border
+// too.
+double DistanceAt(const HandMask& mask, const cv::Mat& field, const Eigen::Vector2d& pixel,
+                  Eigen::Vector2d& slope) {
+  const Eigen::Vector2d at = mask.ToMask(pixel);
+  const double x = std::clamp(at.x(), 0.0, field.cols - 1.001);
+  const double y = std::clamp(at.y(), 0.0, field.rows - 1.001);
   const int j = static_cast<int>(x), i = static_cast<int>(y);
   const double a = x - j, b = y - i;
-  const float* top = field.outside.ptr<float>(i) + j;
-  const float* bottom = field.outside.ptr<float>(std::min(i + 1, field.outside.rows - 1)) + j;
-  const double step = field.mask->step;
-  slope = {((1 - b) * (top[1] - top[0]) + b * (bottom[1] - bottom[0])) / step,
-           ((1 - a) * (bottom[0] - top[0]) + a * (bottom[1] - top[1])) / step};
+  const float* top = field.ptr<float>(i) + j;
+  const float* bottom = field.ptr<float>(std::min(i + 1, field.rows - 1)) + j;
+  slope = {((1 - b) * (top[1] - top[0]) + b * (bottom[1] - bottom[0])) / mask.step,
+           ((1 - a) * (bottom[0] - top[0]) + a * (bottom[1] - top[1])) / mask.step};
   const double inside =
       (1 - b) * ((1 - a) * top[0] + a * top[1]) + b * ((1 - a) * bottom[0] + a * bottom[1]);
-  const Eigen::Vector2d beyond = step * (at - Eigen::Vector2d(x, y));
+  const Eigen::Vector2d beyond = mask.step * (at - Eigen::Vector2d(x, y));
   if (beyond.squaredNorm() > 0) slope += beyond.normalized();
   return inside + beyond.norm();
 }
@@ -76,6 +76,8 @@ MaskField MakeField(const HandMask& mask, int wanted, const Eigen::Vector2d& mid
   cv::bitwise_not(mask.mask, inverse);
   cv::distanceTransform(inverse, field.outside, cv::DIST_L2, 3);
   field.outside *= mask.step;
+  cv::distanceTransform(mask.mask, field.inside, cv::DIST_L2, 3);
+  field.inside *= mask.step;
   int total = 0;
   const auto visit = [&](auto&& keep) {
     for (int i = 0; i < mask.mask.rows; ++i) {
@@ -104,10 +106,33 @@ MaskField MakeField(const HandMask& mask, int wanted, const Eigen::Vector2d& mid
   return field;
 }
 
+HandFields MakeFields(const StereoCameras& cameras, const HandObservation& observation,
+                      const HandPoseOptions& options) {
+  HandFields fields;
+  Eigen::Vector3d middle_W = Eigen::Vector3d::Zero();
+  int tips = 0;
+  for (const auto& tip : observation.tip_W) {
+    if (tip) middle_W += *tip, ++tips;
+  }
+  if (tips == 0) return fields;
+  middle_W /= tips;
+  for (int v = 0; v < 2; ++v) {
+    if (observation.masks[v] == nullptr || observation.masks[v]->mask.empty()) continue;
+    const auto middle = Project(cameras.view(v), middle_W);
+    if (!middle) continue;
+    const double depth =
+        cameras.view(v).X_WC.linear().col(2).dot(middle_W - cameras.view(v).X_WC.translation());
+    fields[v] = MakeField(*observation.masks[v], options.mask_samples, *middle,
+                          cameras.view(v).fx * 0.2 / std::max(0.1, depth));
+    MarkCuts(observation.object != nullptr ? &observation.object->depth[v] : nullptr, fields[v]);
+  }
+  return fields;
+}
+
 HandFitProblem::HandFitProblem(const HandModel& model, const StereoCameras& cameras,
-                               const HandObservation& observation, const HandFit& last,
-                               const Pose& X_predicted, bool fit_scale, bool first,
-                               const HandPoseOptions& options)
+                               const HandObservation& observation, const HandFields& fields,
+                               const HandFit& last, const Pose& X_predicted, bool fit_scale,
+                               bool first, const HandPoseOptions& options)
     : model_(model),
       cameras_(cameras),
       observation_(observation),
@@ -115,26 +140,13 @@ HandFitProblem::HandFitProblem(const HandModel& model, const StereoCameras& came
       X_predicted_(X_predicted),
       fit_scale_(fit_scale),
       first_(first),
-      options_(options) {
+      options_(options),
+      fields_(fields) {
   n_ = model.tree.num_joints();
-  Eigen::Vector3d middle_W = Eigen::Vector3d::Zero();
-  int tips = 0;
-  for (const auto& tip : observation.tip_W) {
-    if (tip) middle_W += *tip, ++tips;
-  }
-  if (tips > 0) middle_W /= tips;
   num_residuals_ = 3 * kNumFingers;
-  for (int v = 0; v < 2; ++v) {
-    if (observation.masks[v] == nullptr || observation.masks[v]->mask.empty() || tips == 0)
-      continue;
-    const auto middle = Project(cameras.view(v), middle_W);
-    if (!middle) continue;
-    const double depth =
-        cameras.view(v).X_WC.linear().col(2).dot(middle_W - cameras.view(v).X_WC.translation());
-    fields_[v] = MakeField(*observation.masks[v], options.mask_samples, *middle,
-                           cameras.view(v).fx * 0.2 / std::max(0.1, depth));
-    MarkCuts(observation.object != nullptr ? &observation.object->depth[v] : nullptr, fields_[v]);
-    num_residuals_ += static_cast<int>(model.balls.size() + fields_[v].samples.size());
+  for (const MaskField& field : fields_) {
+    if (field.mask == nullptr) continue;
+    num_residuals_ += static_cast<int>(model.balls.size() + field.samples.size()) + 1;
   }
   num_residuals_ += 6 + 2 * n_ + static_cast<int>(model.coupled.size()) + 3;
   node_motion_.assign(model.tree.nodes.size(), {});
@@ -144,6 +156,12 @@ HandFitProblem::HandFitProblem(const HandModel& model, const StereoCameras& came
     }
   }
   scaled_ = model.tree;
+  axis_W_.resize(scaled_.nodes.size());
+  origin_W_.resize(scaled_.nodes.size());
+  const auto balls = static_cast<Eigen::Index>(model.balls.size());
+  p_W_.resize(model.balls.size());
+  J_pixel_.resize(model.balls.size());
+  for (Eigen::ArrayXf* array : {&u_, &v_, &radius_, &distance_}) array->resize(balls);
 }
 
 HandFit HandFitProblem::Result(const Eigen::VectorXd& x) const {
@@ -161,6 +179,10 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
     scaled_.nodes[b].X_PB.translation() = fit.scale * model_.tree.nodes[b].X_PB.translation();
   }
   ForwardKinematics(scaled_, fit.q, X_HB_);
+  for (std::size_t b = 0; b < scaled_.nodes.size(); ++b) {
+    axis_W_[b] = fit.X_WH.linear() * (X_HB_[b].linear() * scaled_.nodes[b].axis);
+    origin_W_[b] = fit.X_WH * X_HB_[b].translation();
+  }
   Jl_ = LeftJacobian(x.segment<3>(3));
   r.setZero();
   if (J != nullptr) J->setZero();
@@ -173,63 +195,20 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
         std::sqrt(std::max(0.05, observation_.confidence[f])) / options_.tip_sigma;
     const Eigen::Vector3d p_W = Point(fit, frame.node, frame.X_BF.translation());
     r.segment<3>(row) = weight * (p_W - *observation_.tip_W[f]);
-    if (J != nullptr) {
-      PointJacobian(fit, frame.node, p_W);
-      J->middleRows<3>(row) = weight * J_point_;
+    for (int c = 0; c < 3 && J != nullptr; ++c) {
+      AddRow(fit, frame.node, p_W, weight * Eigen::Vector3d::Unit(c), row + c, *J);
     }
   }
-  // Balls and mask.
-  const std::size_t num_balls = model_.balls.size();
-  p_W_.resize(num_balls);
-  for (std::size_t i = 0; i < num_balls; ++i) {
+  for (std::size_t i = 0; i < model_.balls.size(); ++i) {
     p_W_[i] = Point(fit, model_.balls[i].node, model_.balls[i].p_B);
   }
   for (int v = 0; v < 2; ++v) {
     if (fields_[v].mask == nullptr) continue;
-    const CameraModel& camera = cameras_.view(v);
-    const ObjectDepth* object =
-        observation_.object != nullptr ? &observation_.object->depth[v] : nullptr;
-    pixel_.resize(num_balls);
-    J_pixel_.resize(num_balls);
-    radius_.resize(num_balls);
-    for (std::size_t i = 0; i < num_balls; ++i) {
-      const auto pixel = Project(camera, p_W_[i], &J_pixel_[i]);
-      pixel_[i] = pixel.value_or(Eigen::Vector2d(-1e4, -1e4));
-      const double depth = camera.X_WC.linear().col(2).dot(p_W_[i] - camera.X_WC.translation());
-      radius_[i] = camera.fx * model_.balls[i].radius * fit.scale / std::max(0.05, depth);
-      const int at = row + static_cast<int>(i);
-      if (!pixel || model_.balls[i].forearm) continue;
-      if (object != nullptr && object->At(*pixel) < depth) continue;  // hidden
-      Eigen::Vector2d slope;
-      const double d = OutsideDistance(fields_[v], pixel_[i], slope);
-      double gain;
-      r[at] = Saturate(d, options_.mask_reach_px, options_.ball_sigma_px, gain);
-      if (J != nullptr && d > 0) {
-        PointJacobian(fit, model_.balls[i].node, p_W_[i]);
-        J->row(at) = gain * slope.transpose() * J_pixel_[i] * J_point_;
-      }
-    }
-    row += static_cast<int>(num_balls);
-    for (std::size_t k = 0; k < fields_[v].samples.size(); ++k) {
-      const Eigen::Vector2d& sample = fields_[v].samples[k];
-      std::size_t nearest = 0;
-      double least = 1e9;
-      for (std::size_t i = 0; i < num_balls; ++i) {
-        const double d = (pixel_[i] - sample).norm() - radius_[i];
-        if (d < least) least = d, nearest = i;
-      }
-      // Where an object or a sleeve cuts the picture of the hand, the hand goes on behind it.
-      if (least > 0 || !(fields_[v].cut[k] || model_.balls[nearest].cut)) {
-        double gain;
-        r[row] = Saturate(least, options_.mask_reach_px, options_.skin_sigma_px, gain);
-        if (J != nullptr) {
-          PointJacobian(fit, model_.balls[nearest].node, p_W_[nearest]);
-          const Eigen::Vector2d direction = (pixel_[nearest] - sample).normalized();
-          J->row(row) = gain * direction.transpose() * J_pixel_[nearest] * J_point_;
-        }
-      }
-      ++row;
-    }
+    AddBalls(fit, v, row, r, J);
+    row += static_cast<int>(model_.balls.size());
+    AddOutline(fit, v, row, r, J);
+    row += static_cast<int>(fields_[v].samples.size());
+    AddSleeve(fit, v, row++, r, J);
   }
   // Motion.
   if (!first_) {
@@ -282,18 +261,88 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
   }
 }
 
-void HandFitProblem::PointJacobian(const HandFit& fit, int node, const Eigen::Vector3d& p_W) {
-  J_point_.setZero(3, num_variables());
-  J_point_.leftCols<3>().setIdentity();
-  const Eigen::Vector3d lever = p_W - fit.X_WH.translation();
-  J_point_.middleCols<3>(3) = -Cross(lever) * Jl_;
-  for (int a : node_motion_[node]) {
-    const KinematicTree::Node& joint = model_.tree.nodes[a];
-    const Eigen::Vector3d axis_W = fit.X_WH.linear() * (X_HB_[a].linear() * joint.axis);
-    J_point_.col(6 + joint.joint) =
-        joint.slide ? axis_W : axis_W.cross(p_W - fit.X_WH * X_HB_[a].translation());
+void HandFitProblem::AddBalls(const HandFit& fit, int view, int row, Eigen::VectorXd& r,
+                              Eigen::MatrixXd* J) {
+  const CameraModel& camera = cameras_.view(view);
+  const MaskField& field = fields_[view];
+  const ObjectDepth* object =
+      observation_.object != nullptr ? &observation_.object->depth[view] : nullptr;
+  for (std::size_t i = 0; i < model_.balls.size(); ++i, ++row) {
+    const HandBall& ball = model_.balls[i];
+    const auto pixel = Project(camera, p_W_[i], &J_pixel_[i]);
+    const double depth = camera.X_WC.linear().col(2).dot(p_W_[i] - camera.X_WC.translation());
+    u_[i] = pixel ? static_cast<float>(pixel->x()) : -1e4F;
+    v_[i] = pixel ? static_cast<float>(pixel->y()) : -1e4F;
+    radius_[i] = static_cast<float>(camera.fx * ball.radius * fit.scale / std::max(0.05, depth));
+    if (!pixel || ball.forearm) continue;
+    if (object != nullptr && object->At(*pixel) < depth) continue;  // hidden
+    Eigen::Vector2d slope;
+    const double d = DistanceAt(*field.mask, field.outside, *pixel, slope);
+    double gain;
+    r[row] = Saturate(d, options_.mask_reach_px, options_.ball_sigma_px, gain);
+    if (J == nullptr || d <= 0) continue;
+    AddRow(fit, ball.node, p_W_[i], gain * J_pixel_[i].transpose() * slope, row, *J);
   }
-  J_point_.col(6 + n_) = lever;  // all lengths from H grow with exp(log scale)
+}
+
+void HandFitProblem::AddOutline(const HandFit& fit, int view, int row, Eigen::VectorXd& r,
+                                Eigen::MatrixXd* J) {
+  const MaskField& field = fields_[view];
+  for (std::size_t k = 0; k < field.samples.size(); ++k, ++row) {
+    const Eigen::Vector2f sample = field.samples[k].cast<float>();
+    distance_ = ((u_ - sample.x()).square() + (v_ - sample.y()).square()).sqrt() - radius_;
+    Eigen::Index nearest = 0;
+    const double least = distance_.minCoeff(&nearest);
+    const HandBall& ball = model_.balls[static_cast<std::size_t>(nearest)];
+    // Where an object or a sleeve cuts the picture of the hand, the hand goes on behind it.
+    if (least <= 0 && (field.cut[k] || ball.cut)) continue;
+    double gain;
+    r[row] = Saturate(least, options_.mask_reach_px, options_.skin_sigma_px, gain);
+    if (J == nullptr) continue;
+    const Eigen::Vector2d direction(u_[nearest] - sample.x(), v_[nearest] - sample.y());
+    AddRow(fit, ball.node, p_W_[nearest],
+           gain * J_pixel_[nearest].transpose() * direction.normalized(), row, *J);
+  }
+}
+
+void HandFitProblem::AddSleeve(const HandFit& fit, int view, int row, Eigen::VectorXd& r,
+                               Eigen::MatrixXd* J) {
+  if (!model_.sleeve_x) return;
+  constexpr double kReach = 20, kBorder = 12;  // px
+  const CameraModel& camera = cameras_.view(view);
+  const MaskField& field = fields_[view];
+  const Eigen::Vector3d p_W =
+      fit.X_WH * Eigen::Vector3d(fit.scale * *model_.sleeve_x, 0, 0);
+  Eigen::Matrix<double, 2, 3> J_pixel;
+  const auto pixel = Project(camera, p_W, &J_pixel);
+  if (!pixel) return;
+  // The picture's border cuts the mask as a sleeve does.
+  if (pixel->x() < kBorder || pixel->y() < kBorder || pixel->x() > camera.width - 1 - kBorder ||
+      pixel->y() > camera.height - 1 - kBorder) {
+    return;
+  }
+  if (observation_.object != nullptr && observation_.object->depth[view].Covers(*pixel)) return;
+  Eigen::Vector2d slope_out, slope_in;
+  const double d = DistanceAt(*field.mask, field.outside, *pixel, slope_out) -
+                   DistanceAt(*field.mask, field.inside, *pixel, slope_in);
+  double gain;
+  r[row] = Saturate(d, kReach, options_.sleeve_sigma_px, gain);
+  if (J != nullptr) {
+    AddRow(fit, 0, p_W, gain * J_pixel.transpose() * (slope_out - slope_in), row, *J);
+  }
+}
+
+void HandFitProblem::AddRow(const HandFit& fit, int node, const Eigen::Vector3d& p_W,
+                            const Eigen::Vector3d& slope_W, int row, Eigen::MatrixXd& J) const {
+  const Eigen::Vector3d lever = p_W - fit.X_WH.translation();
+  J.block<1, 3>(row, 0) = slope_W.transpose();
+  J.block<1, 3>(row, 3) = lever.cross(slope_W).transpose() * Jl_;
+  for (const int a : node_motion_[static_cast<std::size_t>(node)]) {
+    const KinematicTree::Node& joint = scaled_.nodes[a];
+    J(row, 6 + joint.joint) = joint.slide ? axis_W_[a].dot(slope_W)
+                                          : axis_W_[a].cross(p_W - origin_W_[a]).dot(slope_W);
+  }
+  J(row, 6 + n_) = lever.dot(slope_W);  // all lengths from H grow with exp(log scale)
 }
 
 HandFit Solve(HandFitProblem& fit, const HandModel& model, const HandFit& start, int iterations) {

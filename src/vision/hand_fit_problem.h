@@ -14,6 +14,7 @@ namespace springgrasp {
 struct MaskField {
   const HandMask* mask = nullptr;
   cv::Mat outside;                       // CV_32F, px of the picture to the nearest mask entry
+  cv::Mat inside;                        // the same to the nearest entry that is not mask
   std::vector<Eigen::Vector2d> samples;  // px, of the mask's outline
   std::vector<bool> cut;  // of a sample: the outline may be the object's, not the hand's
 };
@@ -22,11 +23,17 @@ struct MaskField {
 MaskField MakeField(const HandMask& mask, int wanted, const Eigen::Vector2d& middle,
                     double reach_px);
 
+// What one frame's pictures ask, shared by all its fits.
+using HandFields = std::array<MaskField, 2>;  // left, right; mask null where nothing was seen
+HandFields MakeFields(const StereoCameras& cameras, const HandObservation& observation,
+                      const HandPoseOptions& options);
+
 // Variables: position of H (m), rotation vector applied from the left to R_start, joints, log
 // scale. Residuals, in this order:
 //   tips          3 per finger    (tip - seen) / sigma
 //   balls         1 per view      distance outside the mask
 //   outline       1 per view      signed distance from the outline of the balls
+//   sleeve        1 per view      where the bare forearm ends, signed distance from the mask's edge
 //   motion        6               deviation from the predicted pose
 //   joints        2 n             deviation from the last and from the resting posture
 //   couplings     1 each          DIP - 2/3 PIP
@@ -35,8 +42,9 @@ MaskField MakeField(const HandMask& mask, int wanted, const Eigen::Vector2d& mid
 class HandFitProblem {
  public:
   HandFitProblem(const HandModel& model, const StereoCameras& cameras,
-                 const HandObservation& observation, const HandFit& last, const Pose& X_predicted,
-                 bool fit_scale, bool first, const HandPoseOptions& options);
+                 const HandObservation& observation, const HandFields& fields, const HandFit& last,
+                 const Pose& X_predicted, bool fit_scale, bool first,
+                 const HandPoseOptions& options);
 
   int num_variables() const { return 7 + n_; }
   int num_residuals() const { return num_residuals_; }
@@ -57,8 +65,12 @@ class HandFitProblem {
     return fit.X_WH * (X_HB_[node] * (fit.scale * p_B));
   }
 
-  // d p_W / d variables, 3 x (7 + n), into J_point_.
-  void PointJacobian(const HandFit& fit, int node, const Eigen::Vector3d& p_W);
+  // Row of J for a residual whose slope over the point p_W of a node is `slope_W`.
+  void AddRow(const HandFit& fit, int node, const Eigen::Vector3d& p_W,
+              const Eigen::Vector3d& slope_W, int row, Eigen::MatrixXd& J) const;
+  void AddBalls(const HandFit& fit, int view, int row, Eigen::VectorXd& r, Eigen::MatrixXd* J);
+  void AddOutline(const HandFit& fit, int view, int row, Eigen::VectorXd& r, Eigen::MatrixXd* J);
+  void AddSleeve(const HandFit& fit, int view, int row, Eigen::VectorXd& r, Eigen::MatrixXd* J);
 
   const HandModel& model_;
   const StereoCameras& cameras_;
@@ -69,16 +81,16 @@ class HandFitProblem {
   const HandPoseOptions& options_;
   int n_ = 0, num_residuals_ = 0;
   Eigen::Matrix3d R_start_ = Eigen::Matrix3d::Identity();
-  std::array<MaskField, 2> fields_;
+  const HandFields& fields_;
   std::vector<std::vector<int>> node_motion_;  // moving ancestors of each node
   KinematicTree scaled_;
   std::vector<Pose> X_HB_;
   Eigen::Matrix3d Jl_ = Eigen::Matrix3d::Identity();
-  Eigen::Matrix<double, 3, Eigen::Dynamic> J_point_;
+  std::vector<Eigen::Vector3d> axis_W_, origin_W_;  // of the nodes' joints
+  // Of the balls, the last three in the view at hand.
   std::vector<Eigen::Vector3d> p_W_;
-  std::vector<Eigen::Vector2d> pixel_;
   std::vector<Eigen::Matrix<double, 2, 3>> J_pixel_;
-  std::vector<double> radius_;
+  Eigen::ArrayXf u_, v_, radius_, distance_;
 };
 
 // Levenberg-Marquardt from `start`; with no iterations it only gives the cost there.

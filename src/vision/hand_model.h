@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "base/fingers.h"
@@ -26,6 +27,8 @@ struct HandModel {
   Eigen::VectorXd rest_sigma;   // rad: how surely
   // Pairs (PIP, DIP): the end joint follows the middle one by two thirds.
   std::vector<std::pair<int, int>> coupled;
+  // Where the bare forearm ends on the x axis of H (negative, m, for scale 1), once it is known.
+  std::optional<double> sleeve_x;
 };
 
 // From a tree whose root is H and which has the frames `mmm_<finger>_tip`; `rest` (size

@@ -32,12 +32,15 @@ Pose ScaledFrame(const HandModel& model, const HandFit& fit, int frame) {
   return X_HB[tree.frames[frame].node] * X_BF;
 }
 
-// A hand that fled up the forearm or rolled over fits the tips nearly as well: every frame one way
+constexpr int kWayOutEvery = 3;  // frames
+
+// A hand that fled up the forearm or rolled over fits the tips nearly as well: now and then one way
 // out is tried, about the fingertips. The better of both, judged by this frame alone, since the
 // past led into the wrong one.
 HandFit TryWayOut(const HandModel& model, const StereoCameras& cameras,
-                  const HandObservation& observation, const HandFit& last, const Pose& X_predicted,
-                  bool fit_scale, const HandPoseOptions& options, const HandFit& fit) {
+                  const HandObservation& observation, const HandFields& fields,
+                  const HandFit& last, const Pose& X_predicted, bool fit_scale,
+                  const HandPoseOptions& options, const HandFit& fit) {
   struct Way {
     Eigen::Vector3d shift, turn;  // m and rad, in H
   };
@@ -47,7 +50,7 @@ HandFit TryWayOut(const HandModel& model, const StereoCameras& cameras,
                                             {{-0.02, 0, 0}, {0, 0, 0}},
                                             {{0, 0, 0}, {-0.3, 0, 0}},
                                             {{0, 0, 0}, {0, -0.3, 0}}}};
-  const Way& way = kWays[static_cast<std::size_t>(last.frame) % kWays.size()];
+  const Way& way = kWays[static_cast<std::size_t>(last.frame / kWayOutEvery) % kWays.size()];
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
   int tips = 0;
   for (const auto& tip : observation.tip_W) {
@@ -64,7 +67,7 @@ HandFit TryWayOut(const HandModel& model, const StereoCameras& cameras,
   free.pose_sigma *= kFree;
   free.turn_sigma *= kFree;
   free.joint_sigma *= kFree;
-  HandFitProblem now(model, cameras, observation, last, X_predicted, fit_scale, false, free);
+  HandFitProblem now(model, cameras, observation, fields, last, X_predicted, fit_scale, false, free);
   other = Solve(now, model, other, 2 * options.iterations);
   constexpr double kClearlyBetter = 1.5;
   return other.cost < Solve(now, model, fit, 0).cost - kClearlyBetter ? other : fit;
@@ -118,7 +121,9 @@ std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras&
   coarse.ball_sigma_px *= 2;
   HandFit any;
   any.q = model.rest;
-  HandFitProblem coarse_problem(model, cameras, observation, any, any.X_WH, true, true, coarse);
+  const HandFields fields = MakeFields(cameras, observation, options);
+  HandFitProblem coarse_problem(model, cameras, observation, fields, any, any.X_WH, true, true,
+                                coarse);
   std::vector<HandFit> starts;
   for (const double bend : {0.3, 1.0, 1.7}) {
     for (const double tilt : {-0.4, 0.0, 0.5, 1.0}) {
@@ -136,7 +141,7 @@ std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras&
   }
   std::stable_sort(starts.begin(), starts.end(),
                    [](const HandFit& a, const HandFit& b) { return a.cost < b.cost; });
-  HandFitProblem problem(model, cameras, observation, any, any.X_WH, true, true, options);
+  HandFitProblem problem(model, cameras, observation, fields, any, any.X_WH, true, true, options);
   std::optional<HandFit> best;
   for (std::size_t i = 0; i < std::min<std::size_t>(4, starts.size()); ++i) {
     const HandFit fit = Solve(problem, model, starts[i], 2 * options.start_iterations);
@@ -160,12 +165,15 @@ HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
     JudgeTips(model, observation, fit);
     return fit;
   }
-  HandFitProblem problem(model, cameras, observation, last, X_predicted, fit_scale, false, options);
+  const HandFields fields = MakeFields(cameras, observation, options);
+  HandFitProblem problem(model, cameras, observation, fields, last, X_predicted, fit_scale, false,
+                         options);
   HandFit start = last;
   start.X_WH = X_predicted;
   HandFit fit = Solve(problem, model, start, options.iterations);
-  if (tips >= 3) {
-    fit = TryWayOut(model, cameras, observation, last, X_predicted, fit_scale, options, fit);
+  if (tips >= 3 && last.frame % kWayOutEvery == 0) {
+    fit = TryWayOut(model, cameras, observation, fields, last, X_predicted, fit_scale, options,
+                    fit);
   }
   fit.frame = last.frame + 1;
   JudgeTips(model, observation, fit);

@@ -23,11 +23,13 @@ struct HandPoseOptions {
   double tip_sigma = 0.003;   // m, of a fully trusted fingertip
   double ball_sigma_px = 5;   // of a ball outside the mask
   double skin_sigma_px = 5;   // of the mask's outline off that of the balls
+  double sleeve_sigma_px = 2;  // of the end of the bare forearm off the mask's edge
   double mask_reach_px = 5;   // beyond, a mask residual says no more: objects hide the hand
   double pose_sigma = 0.006;  // m per frame, about the predicted position
   double turn_sigma = 0.06;   // rad per frame
   double joint_sigma = 0.15;  // rad per frame
-  int mask_samples = 60;      // on the outline, per view
+  double mask_step = 0.15;    // resolution of the masks, in radii of a cap
+  int mask_samples = 120;     // on the outline, per view
   int iterations = 8;         // Levenberg-Marquardt, per frame
   int start_iterations = 25;  // of each start in the first frame
 };

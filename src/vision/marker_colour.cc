@@ -73,7 +73,15 @@ MarkerColour MakeMarkerColour(const MarkerColourOptions& options) {
     colour.bin[i] = static_cast<std::uint8_t>(BinOf(hsv));
     colour.likelihood[i] = inside ? 255 : 0;
   }
+  FuseTables(colour);
   return colour;
+}
+
+void FuseTables(MarkerColour& colour) {
+  colour.both.resize(MarkerColour::kTableSize);
+  for (int i = 0; i < MarkerColour::kTableSize; ++i) {
+    colour.both[i] = static_cast<std::uint16_t>(colour.likelihood[i] << 8 | colour.bin[i]);
+  }
 }
 
 void LearnMarkerColour(const cv::Mat& bgr, const cv::Mat& mask, MarkerColour& colour) {
@@ -111,6 +119,7 @@ void LearnMarkerColour(const cv::Mat& bgr, const cv::Mat& mask, MarkerColour& co
     colour.likelihood[i] = static_cast<std::uint8_t>(
         std::lround(255 * gate * (caps[bin] + rest[bin] > 0 ? posterior : 0.5)));
   }
+  FuseTables(colour);
 }
 
 std::optional<double> FindMarkerHue(const cv::Mat& bgr, MarkerColourOptions options) {
@@ -149,9 +158,9 @@ void MapColours(const cv::Mat& bgr, const MarkerColour& colour, const cv::Rect& 
     std::uint8_t* l = likelihood.ptr(v);
     std::uint8_t* b = bins.ptr(v);
     for (int u = region.x; u < region.x + region.width; ++u, pixel += 3) {
-      const int index = MarkerColour::Index(pixel);
-      l[u] = colour.likelihood[index];
-      b[u] = colour.bin[index];
+      const std::uint16_t both = colour.both[MarkerColour::Index(pixel)];
+      l[u] = static_cast<std::uint8_t>(both >> 8);
+      b[u] = static_cast<std::uint8_t>(both);
     }
   }
 }

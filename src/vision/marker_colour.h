@@ -32,6 +32,7 @@ struct MarkerColour {
   static constexpr int kTableSize = 1 << 15;
   std::vector<std::uint8_t> bin;         // [kTableSize] histogram bin
   std::vector<std::uint8_t> likelihood;  // [kTableSize] back-projection of the cap model, 0..255
+  std::vector<std::uint16_t> both;       // [kTableSize] likelihood << 8 | bin, for MapColours
   Histogram model = {};                  // of the caps in the first frame
   Eigen::Vector3f chroma = {-0.5F, 1.0F, -0.5F};  // BGR weights; sum 0: grey of any value gives 0
   double hue_deg = 120;
@@ -51,6 +52,9 @@ MarkerColour MakeMarkerColour(const MarkerColourOptions& options);
 // Learns histogram and back-projection from the pixels of the caps (`mask` nonzero) against those
 // around them: likelihood = 255 * P(cap | bin) with equal priors. Mask and picture of equal size.
 void LearnMarkerColour(const cv::Mat& bgr, const cv::Mat& mask, MarkerColour& colour);
+
+// Makes `both` of the other two tables, after they were changed.
+void FuseTables(MarkerColour& colour);
 
 // Hue of a colour (red, green, blue, any scale), 0 to 360; 0 for greys.
 double HueDeg(const Eigen::Vector3d& rgb);

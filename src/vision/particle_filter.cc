@@ -1,7 +1,9 @@
 #include "vision/particle_filter.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace springgrasp {
 namespace {
@@ -28,32 +30,78 @@ DiscSamples MakeDiscSamples() {
 
 const DiscSamples kDisc = MakeDiscSamples();
 
-// Counts of the bins about a centre; returns how many samples fell into the picture.
-int CountBins(const cv::Mat& bins, const Eigen::Vector2d& centre, double radius_px,
-              std::array<std::uint16_t, kHistogramBins>& counts) {
-  counts.fill(0);
-  int inside = 0;
-  const auto cx = static_cast<float>(centre.x()) + 0.5F, cy = static_cast<float>(centre.y()) + 0.5F;
+// The disc's points as whole pixels from its middle one, for one radius and one picture.
+struct PixelDisc {
+  std::array<int, kGrid * kGrid> du, dv, offset;
+  int reach = 0;
+};
+
+PixelDisc MakePixelDisc(const cv::Mat& bins, double radius_px) {
+  PixelDisc disc;
   const auto r = static_cast<float>(radius_px);
   for (int s = 0; s < kDisc.count; ++s) {
-    const int u = static_cast<int>(std::floor(cx + r * kDisc.offset[s][0]));
-    const int v = static_cast<int>(std::floor(cy + r * kDisc.offset[s][1]));
-    if (u < 0 || v < 0 || u >= bins.cols || v >= bins.rows) continue;
-    ++counts[bins.ptr(v)[u]];
-    ++inside;
+    disc.du[s] = static_cast<int>(std::floor(0.5F + r * kDisc.offset[s][0]));
+    disc.dv[s] = static_cast<int>(std::floor(0.5F + r * kDisc.offset[s][1]));
+    disc.offset[s] = disc.dv[s] * static_cast<int>(bins.step) + disc.du[s];
+    disc.reach = std::max({disc.reach, std::abs(disc.du[s]), std::abs(disc.dv[s])});
   }
-  return inside;
+  return disc;
+}
+
+// Calls count(bin) for the disc's pixels about a centre, as far as they lie in the picture.
+template <typename Count>
+void VisitBins(const cv::Mat& bins, const Eigen::Vector2d& centre, const PixelDisc& disc,
+               Count&& count) {
+  const int u = static_cast<int>(std::floor(centre.x() + 0.5));
+  const int v = static_cast<int>(std::floor(centre.y() + 0.5));
+  const int reach = disc.reach;
+  if (u >= reach && v >= reach && u < bins.cols - reach && v < bins.rows - reach) {
+    const std::uint8_t* middle = bins.ptr(v) + u;
+    for (int s = 0; s < kDisc.count; ++s) count(middle[disc.offset[s]]);
+    return;
+  }
+  for (int s = 0; s < kDisc.count; ++s) {
+    const int x = u + disc.du[s], y = v + disc.dv[s];
+    if (x >= 0 && y >= 0 && x < bins.cols && y < bins.rows) count(bins.ptr(y)[x]);
+  }
+}
+
+// Quantiles of the normal distribution: 16 random bits make a draw. A particle needs twelve, and
+// logarithms for all of them cost as much as the rest of the filter.
+class NormalTable {
+ public:
+  NormalTable() {
+    double x = -5;
+    for (int i = 0; i < kSize; ++i) {
+      const double p = (i + 0.5) / kSize;
+      for (int newton = 0; newton < 60; ++newton) {
+        const double density = std::exp(-0.5 * x * x) / std::sqrt(2 * std::numbers::pi);
+        const double step = (0.5 * std::erfc(-x / std::numbers::sqrt2) - p) / density;
+        x -= std::clamp(step, -0.5, 0.5);
+        if (std::abs(step) < 1e-12) break;
+      }
+      quantile_[i] = x;
+    }
+  }
+  double Of(std::uint64_t bits) const { return quantile_[bits & (kSize - 1)]; }
+
+ private:
+  static constexpr int kSize = 1 << 12;
+  std::array<double, kSize> quantile_;
+};
+
+const NormalTable& Normals() {
+  static const NormalTable table;
+  return table;
 }
 
 }  // namespace
 
 Histogram RegionHistogram(const cv::Mat& bins, const Eigen::Vector2d& centre, double radius_px) {
-  std::array<std::uint16_t, kHistogramBins> counts;
   Histogram histogram = {};
-  if (CountBins(bins, centre, radius_px, counts) == 0) return histogram;
-  for (int b = 0; b < kHistogramBins; ++b) {
-    histogram[b] = static_cast<float>(counts[b]) / static_cast<float>(kDisc.count);
-  }
+  const float share = 1.0F / static_cast<float>(kDisc.count);
+  VisitBins(bins, centre, MakePixelDisc(bins, radius_px),
+            [&](std::uint8_t bin) { histogram[bin] += share; });
   return histogram;
 }
 
@@ -67,12 +115,20 @@ ParticleSet MakeParticles(const Regions& start, int count) {
 
 void PredictParticles(const Regions& motion, const ParticleOptions& options, RandomEngine& engine,
                       ParticleSet& particles) {
+  const NormalTable& normals = Normals();
   for (Regions& regions : particles.regions) {
-    const double du = options.common_sigma_px * Normal(engine);
-    const double dv = options.common_sigma_px * Normal(engine);
+    std::uint64_t bits = 0;
+    int left = 0;
+    const auto draw = [&] {
+      if (left == 0) bits = engine(), left = 4;
+      const double normal = normals.Of(bits);
+      bits >>= 16;
+      --left;
+      return normal;
+    };
+    const double du = options.common_sigma_px * draw(), dv = options.common_sigma_px * draw();
     for (int f = 0; f < kNumFingers; ++f) {
-      const double eu = options.finger_sigma_px * Normal(engine);
-      const double ev = options.finger_sigma_px * Normal(engine);
+      const double eu = options.finger_sigma_px * draw(), ev = options.finger_sigma_px * draw();
       regions[f] += motion[f] + Eigen::Vector2d(du + eu, dv + ev);
     }
   }
@@ -82,15 +138,26 @@ void WeightParticles(const cv::Mat& bins, const Histogram& model, const Regions&
                      const Regions& motion, const PerFinger<bool>& active,
                      const PerFinger<double>& radius_px, const ParticleOptions& options,
                      ParticleSet& particles) {
-  Histogram root_model;
-  for (int b = 0; b < kHistogramBins; ++b) root_model[b] = std::sqrt(model[b]);
+  // Caps fill few bins; all others count as one that the model does not have.
+  std::array<std::uint8_t, 256> slot = {};
+  std::array<float, kHistogramBins + 1> root_model = {};
+  int slots = 1;
+  for (int b = 0; b < kHistogramBins; ++b) {
+    if (model[b] <= 0) continue;
+    root_model[slots] = std::sqrt(model[b]);
+    slot[b] = static_cast<std::uint8_t>(slots++);
+  }
+  PerFinger<PixelDisc> discs;
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (active[f]) discs[f] = MakePixelDisc(bins, radius_px[f]);
+  }
   std::array<float, kGrid * kGrid + 1> root_count;
   for (std::size_t i = 0; i < root_count.size(); ++i) {
     root_count[i] = std::sqrt(static_cast<float>(i) / static_cast<float>(kDisc.count));
   }
   const double posture_scale = 0.5 / (options.posture_sigma_px * options.posture_sigma_px);
   double total = 0;
-  std::array<std::uint16_t, kHistogramBins> counts;
+  std::array<std::uint16_t, kHistogramBins + 1> counts;
   for (std::size_t i = 0; i < particles.regions.size(); ++i) {
     const Regions& regions = particles.regions[i];
     double similarity = 0, bend = 0;
@@ -98,9 +165,10 @@ void WeightParticles(const cv::Mat& bins, const Histogram& model, const Regions&
     for (int f = 0; f < kNumFingers; ++f) {
       if (!active[f]) continue;
       ++fingers;
-      CountBins(bins, regions[f], radius_px[f], counts);
+      std::fill_n(counts.begin(), slots, std::uint16_t{0});
+      VisitBins(bins, regions[f], discs[f], [&](std::uint8_t bin) { ++counts[slot[bin]]; });
       float rho = 0;
-      for (int b = 0; b < kHistogramBins; ++b) rho += root_model[b] * root_count[counts[b]];
+      for (int b = 1; b < slots; ++b) rho += root_model[b] * root_count[counts[b]];
       similarity += rho;
       for (int g = 0; g < f; ++g) {
         if (!active[g]) continue;

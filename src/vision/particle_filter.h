@@ -39,7 +39,8 @@ struct ParticleOptions {
 // `count` copies of one configuration, equal weights.
 ParticleSet MakeParticles(const Regions& start, int count);
 
-// Moves every particle by `motion` (px per finger) and noise. Draws 2 + 10 normals per particle.
+// Moves every particle by `motion` (px per finger) and noise: 2 + 10 normals per particle, each one
+// of 4096 quantiles, from three draws of the engine.
 void PredictParticles(const Regions& motion, const ParticleOptions& options, RandomEngine& engine,
                       ParticleSet& particles);
 

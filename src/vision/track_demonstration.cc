@@ -51,6 +51,11 @@ class HandFollower {
       std::vector<bool> bare;
       for (const int seen : forearm_seen_) bare.push_back(2 * seen > forearm_frames_);
       KeepBareForearm(bare, model_);
+      if (sleeve_x_.size() >= 4) {
+        std::nth_element(sleeve_x_.begin(), sleeve_x_.begin() + sleeve_x_.size() / 2,
+                         sleeve_x_.end());
+        model_.sleeve_x = sleeve_x_[sleeve_x_.size() / 2];
+      }
       forearm_frames_ = 0;
     }
     return &*fit_;
@@ -84,7 +89,7 @@ class HandFollower {
                  cv::Point(static_cast<int>(u1 + reach), static_cast<int>(v1 + reach))) &
         cv::Rect(0, 0, bgr.cols, bgr.rows);
     if (region.area() < 100) return false;
-    const int step = std::max(2, static_cast<int>(std::lround(radius / 3)));
+    const int step = std::max(1, static_cast<int>(std::lround(options_.mask_step * radius)));
     SegmentHand(bgr, tracker.skin(), tracker.colour(), caps, radius, region, step, masks_[v]);
     return true;
   }
@@ -103,10 +108,29 @@ class HandFollower {
       }
       forearm_seen_[i] += views == 2;
     }
+    // Where the skin ends on the way up the forearm, if both pictures show it.
+    constexpr double kStep = 0.002, kMost = 0.11;  // m
+    double sum = 0;
+    for (int v = 0; v < 2; ++v) {
+      double x = 0;
+      std::optional<Eigen::Vector2d> pixel;
+      for (; x > -kMost; x -= kStep) {
+        pixel = Project(cameras_.view(v), fit_->X_WH * Eigen::Vector3d(fit_->scale * x, 0, 0));
+        if (!pixel || !OnSkin(masks_[v], *pixel)) break;
+      }
+      const CameraModel& camera = cameras_.view(v);
+      if (x == 0 || x <= -kMost || !pixel || pixel->x() < 12 || pixel->y() < 12 ||
+          pixel->x() > camera.width - 13 || pixel->y() > camera.height - 13) {
+        return;
+      }
+      sum += x + 0.5 * kStep;
+    }
+    sleeve_x_.push_back(sum / 2);
   }
 
   HandModel model_;
   std::vector<int> forearm_seen_;
+  std::vector<double> sleeve_x_;  // m, of the frames of the lead-in in which it was seen
   int forearm_frames_ = 0;
   StereoCameras cameras_;
   HandPoseOptions options_;
