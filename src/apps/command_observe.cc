@@ -17,8 +17,10 @@ struct Options {
   std::string scene, output, overlay, truth, frames;
   std::uint64_t seed = 1;
   double fps = 0;
-  double noise = 0;
+  std::optional<double> noise;
+  std::optional<std::string> tracker;
   ObserveRecordedOptions recorded;
+  bool particles = false;
   bool recorded_only = false;  // an option of recorded video was given
 };
 
@@ -32,8 +34,10 @@ int RunRecorded(Options options) {
   for (const auto& [name, value] : needed) {
     ThrowUnless(!value->empty(), "observe on recorded video needs {} too", name);
   }
-  ThrowUnless(options.truth.empty() && options.frames.empty() && options.noise == 0,
+  ThrowUnless(options.truth.empty() && options.frames.empty() && !options.noise,
               "--truth, --save-frames and --noise are for a scene, not for recorded video");
+  ThrowUnless(!options.tracker && !options.particles,
+              "--tracker and --particles are for a scene, not for recorded video");
   for (const std::string& path : {options.output, options.overlay}) CheckOutputPath(path);
   recorded.output = options.output;
   recorded.overlay = options.overlay;
@@ -77,7 +81,9 @@ int RunObserve(const Options& options) {
   ObserveOptions observe;
   observe.fps = options.fps > 0 ? options.fps : scene.demonstrator.fps;
   observe.noise = options.noise;
+  observe.tracker = options.tracker;
   observe.overlay = options.overlay;
+  observe.particles = options.particles;
   observe.frames_folder = options.frames;
   RandomEngine engine = MakeStream(options.seed, 0, "observation");
   MakeFolderOf(options.overlay);
@@ -114,12 +120,15 @@ void AddObserveCommand(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("--truth", options->truth, "demonstration CSV: what was shown");
   command->add_option("--overlay", options->overlay, "video of the tracking (.mp4)");
+  command->add_flag("--particles", options->particles, "draw the particles into the overlay");
   command->add_option("--save-frames", options->frames, "folder for the pictures of both eyes");
   command
       ->add_option("--fps", options->fps, "frames per second (default: the scene's, the video's)")
       ->check(CLI::Range(5.0, 1000.0));
   command->add_option("--noise", options->noise, "deviation of the grey values, 0 to 255")
       ->check(CLI::Range(0.0, 255.0));
+  command->add_option("--tracker", options->tracker, "outline or paper (default: the scene's)")
+      ->check(CLI::IsMember(std::vector<std::string>(kTrackerKinds.begin(), kTrackerKinds.end())));
   command->add_option("--seed", options->seed, "of the random streams")->capture_default_str();
   command->callback([options, pose, hue, &exit_code] {
     options->recorded_only = pose->count() + hue->count() > 0;

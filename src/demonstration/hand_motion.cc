@@ -64,6 +64,21 @@ HandMotion Resampled(const HandMotion& motion, double rate) {
   return even;
 }
 
+HandMotion AtPeakSpeed(const HandMotion& motion, double speed) {
+  constexpr double kWindow = 0.03;  // s
+  double peak = 0;
+  for (const HandMotionSample& sample : motion.samples) {
+    const Pose a = Interpolated(motion, sample.t).X_WH;
+    const Pose b = Interpolated(motion, sample.t + kWindow).X_WH;
+    peak = std::max(peak, (b.translation() - a.translation()).norm() / kWindow);
+  }
+  ThrowUnless(peak > 1e-3, "{}: the wrist stands still, so that it cannot be moved at {} m/s",
+              motion.source, speed);
+  HandMotion paced = motion;
+  for (HandMotionSample& sample : paced.samples) sample.t *= peak / speed;
+  return paced;
+}
+
 HandMotion WithLeadIn(const HandMotion& motion, const Eigen::VectorXd& q_open, double duration,
                       double rate) {
   ThrowUnless(motion.samples.size() >= 2, "{}: a hand motion without movement", motion.source);

@@ -42,6 +42,10 @@ HandMotionSample Interpolated(const HandMotion& motion, double t);
 // Even samples at `rate` Hz, one of them at t = 0.
 HandMotion Resampled(const HandMotion& motion, double rate);
 
+// The same motion, slower or faster throughout: the wrist's largest speed (over 30 ms of the motion
+// as it was) becomes `speed`, m/s; t = 0 stays. Throws Error if the wrist does not move.
+HandMotion AtPeakSpeed(const HandMotion& motion, double speed);
+
 // Puts `duration` seconds of the open hand before the first sample: from rest at joints `q_open`
 // into the first sample, meeting its position and velocity (minimum jerk), t from -duration.
 HandMotion WithLeadIn(const HandMotion& motion, const Eigen::VectorXd& q_open,

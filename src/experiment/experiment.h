@@ -33,10 +33,12 @@ using SceneOverride = std::pair<std::string, std::string>;
 
 struct ExperimentCase {
   std::string name;
-  std::string scene;       // file beside the experiment, else under scenes/, else absolute
-  std::string grasp_type;  // pinch | tripod | power | lateral
+  std::string scene;              // file beside the experiment, else under scenes/, else absolute
+  std::string grasp_type;         // pinch | tripod | power | lateral
+  std::string until = "perform";  // perform | observe: tracked, not learned
   int dim = 3;
   std::string profile = "human";
+  int repetitions = 0;  // 0: the experiment's
   CaseDemonstration demonstration;
   std::vector<SceneOverride> set;
   // Grid: every combination of the values of each scene key is a condition of its own.
@@ -49,8 +51,9 @@ struct Experiment {
   std::string name;
   std::uint64_t seed = 0;
   int repetitions = 1;
-  std::string demonstrations;           // folder of recordings; empty: none needed
-  bool with_open_hand = false;          // baseline: every trial also with a constant open hand
+  std::string demonstrations;  // folder of recordings; empty: none needed
+  // Baseline: every trial that performs also with a constant open hand.
+  bool with_open_hand = false;
   std::vector<std::string> substitute;  // sorted
   TrialCriteria criteria;
   RecordOptions record;

@@ -139,14 +139,17 @@ std::vector<PlannedTrial> ExpandExperiment(const Experiment& e) {
         spec.demonstration = file.empty() ? "synthesised" : fs::path(file).stem().string();
         BuildScene(e, c, condition, file, spec);
         spec.grasp_type = c.grasp_type;
+        spec.until = c.until;
         spec.dim = c.dim;
         spec.profile = c.profile;
         spec.criteria = e.criteria;
         spec.substitute = e.substitute;
         spec.seed = e.seed;
-        for (int i = 0; i < e.repetitions * (e.with_open_hand ? 2 : 1); ++i) {
-          spec.repetition = e.with_open_hand ? i / 2 : i;
-          spec.open_hand = e.with_open_hand && i % 2 == 1;
+        const bool with_open_hand = e.with_open_hand && c.until == "perform";
+        const int repetitions = c.repetitions > 0 ? c.repetitions : e.repetitions;
+        for (int i = 0; i < repetitions * (with_open_hand ? 2 : 1); ++i) {
+          spec.repetition = with_open_hand ? i / 2 : i;
+          spec.open_hand = with_open_hand && i % 2 == 1;
           PlannedTrial trial{TrialIdentity(spec), spec, {}};
           const bool first = i == 0;
           trial.output.video = Wanted(e.record.videos, first);

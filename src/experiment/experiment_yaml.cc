@@ -51,6 +51,8 @@ ExperimentCase ReadCase(YamlReader& yaml) {
   yaml.Read("scene", c.scene);
   yaml.Require("grasp");
   yaml.Read("grasp", c.grasp_type, kTypes);
+  yaml.Read("until", c.until, {"perform", "observe"});
+  yaml.Read("repetitions", c.repetitions, {1, 1000000});
   yaml.Read("dim", c.dim, {2, 3});
   yaml.Read("profile", c.profile, {"human", "paper"});
   c.demonstration = ReadCaseDemonstration(yaml.Child("demonstration"));

@@ -6,8 +6,8 @@
 #include "base/error.h"
 #include "experiment/demonstrator_recorded.h"
 #include "experiment/demonstrator_synthesise.h"
-#include "experiment/observe_noise.h"
 #include "experiment/observe_placement.h"
+#include "experiment/simulated_eyes.h"
 #include "render/video_writer.h"
 #include "vision/overlay.h"
 
@@ -28,6 +28,13 @@ std::vector<DemonstrationSample> OnInstantsOf(const Demonstration& truth,
     samples.push_back(sample);
   }
   return samples;
+}
+
+TrackerKind KindOf(const std::string& name) {
+  const auto kind = std::find(kTrackerKinds.begin(), kTrackerKinds.end(), name);
+  ThrowUnless(kind != kTrackerKinds.end(), "the tracker is '{}', expected one of {}", name,
+              fmt::join(kTrackerKinds, ", "));
+  return static_cast<TrackerKind>(kind - kTrackerKinds.begin());
 }
 
 std::string PoseText(const Pose& X) {
@@ -66,13 +73,17 @@ HandMotion PrepareDemonstration(const Scene& scene, const ObserveStage& stage,
                 scene.source, who.type);
     motion = SynthesiseGrasp(hand, {who.type, *shape}, engine);
   }
-  motion = WithLeadIn(motion, hand.open);
+  const HandMotion as_performed = WithLeadIn(motion, hand.open);
   Pose X_WM;
   if (who.X_WO && motion.object) {
     X_WM = *who.X_WO * motion.object->X_WO.inverse();
   } else {
-    X_WM = PlaceInDisplay(hand, motion, stage.eyes(), display).X_WM;
+    if (who.distance) display.near = display.far = *who.distance;
+    display.margin_px *= stage.pinholes().left.height / 480.0;
+    // By the motion as it is: speed and lens do not move the place.
+    X_WM = PlaceInDisplay(hand, as_performed, stage.pinholes(), display).X_WM;
   }
+  motion = who.speed ? WithLeadIn(AtPeakSpeed(motion, *who.speed), hand.open) : as_performed;
   motion = Moved(motion, X_WM);
   motion.comments.push_back("placement: " + PoseText(X_WM));
   return motion;
@@ -105,16 +116,22 @@ Observation ObserveMotion(ObserveStage& stage, const HandMotion& motion, RandomE
   Observation result;
   result.shown = Resampled(motion, options.fps);
   result.truth = TruthOf(stage.hand(), result.shown);
-  PictureNoise noise(options.noise, engine);
+  SceneEyes settings = stage.eyes_settings();
+  if (options.noise) settings.noise = *options.noise;
+  SimulatedEyes eyes(stage, settings, motion, result.shown, engine);
   std::size_t next = 0;
   const FrameSource camera = [&]() -> std::optional<StereoFrame> {
+    for (; next < result.shown.samples.size(); ++next) {
+      if (!eyes.IsDropped(next)) break;
+      if (result.shown.samples[next].t >= 0 && options.measure_visible) {
+        result.visible.push_back(PerFinger<double>{});
+      }
+    }
     if (next == result.shown.samples.size()) return std::nullopt;
     const HandMotionSample& shown = result.shown.samples[next];
-    stage.Show(shown, motion.object);
-    StereoFrame frame{shown.t, stage.Picture(0), stage.Picture(1)};
-    noise.AddTo(frame.left, engine);
-    noise.AddTo(frame.right, engine);
+    const StereoFrame frame = eyes.Look(next);
     if (shown.t >= 0 && options.measure_visible) {
+      eyes.Show(next);
       const PerFinger<double> left = stage.VisibleCaps(0), right = stage.VisibleCaps(1);
       PerFinger<double> both;
       for (int f = 0; f < kNumFingers; ++f) {
@@ -136,15 +153,26 @@ Observation ObserveMotion(ObserveStage& stage, const HandMotion& motion, RandomE
     OverlayOptions overlay;
     overlay.t = std::max(0.0, instant.frame.t);
     if (instant.hand != nullptr) overlay.X_WH = instant.hand->X_WH;
-    video->Add(DrawOverlay(instant.frame.left, instant.frame.right, stage.eyes(), instant.tracked,
+    for (int v = 0; v < 2 && options.particles; ++v) {
+      overlay.particles[v] = &instant.tracker.particles(v);
+    }
+    video->Add(DrawOverlay(instant.frame.left, instant.frame.right, eyes.told(), instant.tracked,
                            instant.tracker.cap().radius, overlay));
   };
   TrackDemonstrationOptions tracking;
+  tracking.tracker.kind = KindOf(options.tracker.value_or(settings.tracker));
   tracking.lead_in = -result.shown.samples.front().t;
   if (stage.shows_object()) tracking.object = motion.object;
   if (stage.cap_hue_deg()) tracking.tracker.colour.hue_deg = stage.cap_hue_deg();
-  result.tracked = TrackStereo(camera, stage.eyes(), &stage.common_hand(), tracking, engine, draw,
-                               &result.summary);
+  try {
+    result.tracked = TrackStereo(camera, eyes.told(), &stage.common_hand(), tracking, engine, draw,
+                                 &result.summary);
+  } catch (const NotTracked& e) {
+    if (options.throw_untracked) throw;
+    result.untracked = e.what();
+    while (camera()) continue;  // what was visible still counts
+  }
+  if (video && !result.untracked.empty()) video.reset();
   if (video) video->Finish();
   result.tracked.source = motion.source;
   result.tracked.up = motion.up;

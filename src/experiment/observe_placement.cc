@@ -186,8 +186,9 @@ class Search {
   }
 
   void ConsiderTurn(const Eigen::Matrix3d& R) {
-    for (int i = 0; i <= 4; ++i) {
-      const double depth = options_.near + (options_.far - options_.near) * i / 4;
+    const int steps = options_.far > options_.near ? 4 : 0;
+    for (int i = 0; i <= steps; ++i) {
+      const double depth = options_.near + (options_.far - options_.near) * i / std::max(1, steps);
       Consider(Centred(R, depth), depth);
     }
   }

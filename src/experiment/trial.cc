@@ -13,15 +13,13 @@
 #include "experiment/demonstrator_hand.h"
 #include "experiment/observe.h"
 #include "experiment/perform_grasp.h"
+#include "experiment/trial_observe.h"
 #include "grasp/learn.h"
 #include "sim/kinematic_tree_of.h"
 #include "sim/scene_builder.h"
 
 namespace springgrasp {
 namespace {
-
-constexpr double kMinSeen = 0.6;        // of the frames, else `untracked`
-constexpr double kMaxUnseenEnd = 0.15;  // s before contact, else `untracked`
 
 bool Substituted(const TrialSpec& spec, const std::string& stage) {
   return std::find(spec.substitute.begin(), spec.substitute.end(), stage) != spec.substitute.end();
@@ -62,31 +60,6 @@ void HoldOpen(double hand_length, Demonstration& demonstration) {
     const Pose X_WH = MakePose(*sample.p_WH, *sample.R_WH);
     for (int f = 0; f < kNumFingers; ++f) sample.p_WF[f] = X_WH * p_HF[f];
   }
-}
-
-// An involved finger seen in fewer than 60 % of frames, or not in the last 0.15 s, where the
-// demonstrating hand holds the object (the contract counts from the contact).
-std::string Untracked(const Demonstration& demonstration, const PerFinger<bool>& involved) {
-  const double end = demonstration.samples.back().t;
-  for (int f = 0; f < kNumFingers; ++f) {
-    if (!involved[f]) continue;
-    int seen = 0;
-    double last = -1e9;
-    for (const DemonstrationSample& sample : demonstration.samples) {
-      if (!sample.p_WF[f]) continue;
-      ++seen;
-      last = sample.t;
-    }
-    const double share =
-        static_cast<double>(seen) / static_cast<double>(demonstration.samples.size());
-    if (share < kMinSeen) {
-      return fmt::format("{} seen in {:.0f} % of the frames", kFingerNames[f], 100 * share);
-    }
-    if (end - last > kMaxUnseenEnd) {
-      return fmt::format("{} not seen in the last {:.2f} s", kFingerNames[f], end - last);
-    }
-  }
-  return "";
 }
 
 void RecordObservation(const Observation& seen, TrialResult& result) {
@@ -145,6 +118,7 @@ class Stopwatch {
 }  // namespace
 
 TrialResult RunTrial(const TrialSpec& spec, const TrialOutput& output) {
+  if (spec.until == "observe") return RunObserveTrial(spec, output);
   CheckSubstitutes(spec);
   ThrowUnless(!spec.scene.objects.empty(), "{}: the scene has no object to grasp",
               spec.scene.source);
@@ -175,7 +149,7 @@ TrialResult RunTrial(const TrialSpec& spec, const TrialOutput& output) {
     WriteDemonstration(demonstration, file(true, "demonstration.csv"));
     WriteDemonstration(seen.truth, file(true, "truth.csv"));
   }
-  const std::string untracked = Untracked(demonstration, seen.shown.involved);
+  const std::string untracked = WhyUntracked(demonstration, seen.shown.involved);
   if (!untracked.empty()) {
     result.outcome = Outcome::kUntracked;
     result.message = untracked;

@@ -12,6 +12,8 @@ std::string CanonicalText(const TrialSpec& spec) {
       "grasp: {}\ndim: {}\nprofile: {}\nsubstitute: {}\nopen_hand: {}\nseed: {}\nrepetition: {}\n",
       spec.grasp_type, spec.dim, spec.profile, fmt::join(spec.substitute, ","), spec.open_hand,
       spec.seed, spec.repetition);
+  // Written only where it is not the default, so that older trials keep their identity.
+  if (spec.until != "perform") text += fmt::format("until: {}\n", spec.until);
   for (const CriterionField& field : kCriterionFields) {
     text += fmt::format("criteria.{}: {}\n", field.name, spec.criteria.*field.member);
   }

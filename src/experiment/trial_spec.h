@@ -19,6 +19,7 @@ struct TrialSpec {
   Scene scene;                    // overrides applied, poses not yet drawn; with its demonstrator
   std::string scene_text;         // canonical text of the above (files by their content)
   std::string grasp_type;         // pinch | tripod | power | lateral
+  std::string until = "perform";  // perform | observe: where the trial ends
   int dim = 3;                    // of the springs
   std::string profile = "human";  // human | paper
   TrialCriteria criteria;

@@ -13,6 +13,7 @@
 #include "sim/object_file.h"
 #include "sim/pneumatics.h"
 #include "sim/ring.h"
+#include "sim/scene_eyes.h"
 
 namespace springgrasp {
 
@@ -73,6 +74,12 @@ struct SceneCamera {
   double fovy_deg = 40;
 };
 
+// A plate that follows a cap on its way to the eyes, for a while in mid-movement.
+struct SceneOcclusion {
+  std::vector<int> fingers;  // 0 to 4 (YAML: names); none: off
+  int frames = 15;           // for how long
+};
+
 // Who shows the grasp, and what the eyes see of it.
 struct SceneDemonstrator {
   std::string kind = "synthesised";  // synthesised | recorded
@@ -84,6 +91,10 @@ struct SceneDemonstrator {
                                      // chosen in the display volume before the eyes
   double hand_length = 0.189;        // m
   int fps = 30;                      // of the eyes, Hz
+  std::optional<double> distance;    // m, the path's middle before the eyes; absent: 0.5 to 0.7
+  std::optional<double> speed;       // m/s, the wrist's peak; absent: as performed
+  SceneOcclusion occlusion;
+  int clutter = 0;  // things behind and beside the hand
   // Absent: as in the model of the hand. Colours are red, green, blue, 0..1.
   std::optional<double> cap_diameter;  // m
   std::optional<Eigen::Vector3d> cap_colour;
@@ -119,6 +130,7 @@ struct Scene {
   std::vector<SceneLight> lights;    // default: two
   std::vector<SceneCamera> cameras;  // default: front and close
   SceneDemonstrator demonstrator;
+  SceneEyes eyes;
   ScenePhysics physics;
   PneumaticParameters pneumatics;
 };

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "sim/demonstrator_part.h"
+#include "sim/display_furniture.h"
 #include "sim/mjcf_part.h"
 #include "sim/model_index.h"
 #include "sim/scene_furniture.h"
@@ -160,6 +161,10 @@ std::string BuildMjcf(const Scene& scene, const BuildOptions& options) {
     }
   }
   if (options.shown_object) AddShownObject(*options.shown_object, scene, root);
+  if (options.with_demonstrator) {
+    AddOccluders(scene, root);
+    AddClutter(scene, root);
+  }
   ChildOf(root, "keyframe")->InsertNewChildElement("key")->SetAttribute("name", "start");
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);

@@ -15,7 +15,7 @@ struct BuildOptions {
   bool with_objects = true;  // free bodies `<name>` with joint `<name>_free`
   // Adds the human hand, sized and coloured by scene.demonstrator (demonstrator_part.h): body
   // mmm_hand becomes a mocap body (PlaceBody moves it), its finger joints are set kinematically,
-  // nothing of it collides.
+  // nothing of it collides. So do the plates and the clutter of display_furniture.h.
   bool with_demonstrator = false;
   std::string demonstrator_model = "mmm_hand/mmm_hand_r.xml";
   // The demonstrator's object as a visual mocap body "shown_object" (its shape below).

@@ -1,10 +1,11 @@
+#include "sim/scene_yaml.h"
+
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <set>
 
 #include "base/error.h"
-#include "base/files.h"
 #include "base/yaml_reader.h"
 #include "sim/scene.h"
 
@@ -17,29 +18,6 @@ constexpr Bounds kInSpace{-10, 10};
 constexpr Bounds kAngle{-6.2832, 6.2832};
 constexpr Bounds kFraction{0, 1};
 constexpr Bounds kError{-0.9, 10};
-
-// Full path of a file that a scene names: absolute, beside the scene, or in the source folder.
-std::string ResolveFile(const std::string& file, const std::string& scene, const std::string& where,
-                        const char* key) {
-  const fs::path beside = fs::path(scene).parent_path() / file;
-  const fs::path shipped = fs::path(SourceFolder()) / file;
-  std::error_code ignored;
-  if (fs::is_regular_file(beside, ignored)) return fs::absolute(beside).lexically_normal();
-  if (fs::is_regular_file(shipped, ignored)) return shipped.lexically_normal();
-  Fail("{}: {} names '{}', but there is no such file beside the scene or in {}", where, key, file,
-       SourceFolder());
-}
-
-std::optional<Shape> ReadShape(YamlReader& yaml, const std::string& key) {
-  std::string text;
-  yaml.Read(key, text);
-  if (text.empty()) return std::nullopt;
-  try {
-    return ParseShape(text);
-  } catch (const Error& e) {
-    Fail("{}: {}", yaml.Where(key), e.what());
-  }
-}
 
 void ReadPlane(YamlReader& yaml, const std::string& key, Eigen::Vector2d& value) {
   std::vector<double> v{value.x(), value.y()};
@@ -94,12 +72,12 @@ SceneObject ReadObject(YamlReader& yaml, const std::string& scene) {
   SceneObject o;
   yaml.Read("name", o.name);
   CheckName(o.name, yaml.Where("name"));
-  o.shape = ReadShape(yaml, "shape");
+  o.shape = ReadSceneShape(yaml, "shape");
   yaml.Read("model", o.model);
   ThrowUnless(o.shape || !o.model.empty(),
               "{}: object '{}' needs either a shape or a model (a file), or both",
               yaml.Where("name"), o.name);
-  if (!o.model.empty()) o.model = ResolveFile(o.model, scene, yaml.Where("model"), "model");
+  if (!o.model.empty()) o.model = ResolveSceneFile(o.model, scene, yaml.Where("model"), "model");
   if (o.shape) {
     ThrowUnless(o.shape->size.minCoeff() >= 0.001 && o.shape->size.maxCoeff() <= 2,
                 "{}: extents of {} must lie between 0.001 and 2 m", yaml.Where("shape"),
@@ -164,45 +142,6 @@ SceneCamera ReadCamera(YamlReader& yaml) {
               "{}: the camera stands where it looks at", yaml.Where("lookat"));
   yaml.Finish();
   return camera;
-}
-
-// Caps and skin; keys that are absent leave the model's.
-void ReadLook(YamlReader& yaml, SceneDemonstrator& d) {
-  if (yaml.Has("cap_diameter")) {
-    yaml.Read("cap_diameter", d.cap_diameter.emplace(), {0.012, 0.03});
-  }
-  if (yaml.Has("skin_colour")) yaml.Read("skin_colour", d.skin_colour.emplace(), kFraction);
-  if (!yaml.Has("cap_colour")) return;
-  Eigen::Vector3d& colour = d.cap_colour.emplace(Eigen::Vector3d::Zero());
-  yaml.Read("cap_colour", colour, kFraction);
-  // The tracker finds caps by their hue; greys have none, and what is dark has none in a picture.
-  ThrowUnless(colour.maxCoeff() >= 0.3 && colour.minCoeff() <= 0.5 * colour.maxCoeff(),
-              "{}: cap_colour is [{}, {}, {}], expected a bright colour with a hue (the largest at "
-              "least 0.3, the smallest at most half of it)",
-              yaml.Where("cap_colour"), colour.x(), colour.y(), colour.z());
-}
-
-void ReadDemonstrator(YamlReader yaml, const std::string& scene, SceneDemonstrator& d) {
-  yaml.Read("kind", d.kind, {"synthesised", "recorded"});
-  yaml.Read("type", d.type, {"pinch", "tripod", "power", "lateral"});
-  yaml.Read("file", d.file);
-  if (d.kind == "recorded") {
-    yaml.Require("file");
-    d.file = ResolveFile(d.file, scene, yaml.Where("file"), "file");
-  } else {
-    ThrowUnless(d.file.empty(), "{}: file is given, but kind is synthesised, expected recorded",
-                yaml.Where("file"));
-  }
-  d.object = ReadShape(yaml, "object");
-  yaml.Read("object_visible", d.object_visible);
-  if (yaml.Has("pose")) {
-    d.X_WO = Pose::Identity();
-    yaml.Read("pose", *d.X_WO);
-  }
-  yaml.Read("hand_length", d.hand_length, {0.1, 0.3});
-  ReadLook(yaml, d);
-  yaml.Read("fps", d.fps, {5, 1000});
-  yaml.Finish();
 }
 
 void ReadPhysics(YamlReader yaml, ScenePhysics& p) {
@@ -294,6 +233,7 @@ Scene ReadSceneFrom(YamlReader yaml, const std::string& name) {
   for (YamlReader& child : yaml.Children("lights")) scene.lights.push_back(ReadLight(child));
   for (YamlReader& child : yaml.Children("cameras")) scene.cameras.push_back(ReadCamera(child));
   ReadDemonstrator(yaml.Child("demonstrator"), name, scene.demonstrator);
+  ReadEyes(yaml.Child("eyes"), scene.eyes);
   ReadPhysics(yaml.Child("physics"), scene.physics);
   ReadPneumatics(yaml.Child("pneumatics"), scene.pneumatics);
   yaml.Finish();

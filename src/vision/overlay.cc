@@ -80,7 +80,7 @@ cv::Mat DrawOverlay(const cv::Mat& left, const cv::Mat& right, const StereoCamer
   }
   std::string missing;
   for (int f = 0; f < kNumFingers; ++f) {
-    if (!frame.fingers[f].p_W) missing += " " + std::string(kFingerNames[f]);
+    if (!frame.fingers[f].p_W) missing.append(" ").append(kFingerNames[f]);
   }
   if (!missing.empty()) {
     OutlinedText(both, "not seen:" + missing, {8, both.rows - 10}, {40, 40, 40}, 0.5);

@@ -167,9 +167,11 @@ Demonstration TrackStereo(const FrameSource& source, const StereoCameras& camera
     } else if (auto start = tracker.Start(frame->left, frame->right)) {
       tracked = *start;
     } else {
-      ThrowUnless(t < options.max_wait,
-                  "no five fingertip markers of one hand found in both views in the first {} s",
-                  options.max_wait);
+      if (t >= options.max_wait) {
+        throw NotTracked(fmt::format(
+            "no five fingertip markers of one hand found in both views in the first {} s",
+            options.max_wait));
+      }
       continue;
     }
     ++frames;
@@ -204,8 +206,10 @@ Demonstration TrackStereo(const FrameSource& source, const StereoCameras& camera
     hand_track.push_back(hand_sample);
   }
   ThrowUnless(t_first.has_value(), "no frame to track: the video is empty");
-  ThrowUnless(frames > 0, "no five fingertip markers of one hand found in both views in {} frames",
-              "any of the");
+  if (frames == 0) {
+    throw NotTracked(
+        "no five fingertip markers of one hand found in both views in any of the frames");
+  }
 
   if (options.smoothing > 0) hand_track = SmoothHandTrack(hand_track, options.smoothing);
   for (std::size_t i = 0; i < demonstration.samples.size(); ++i) {

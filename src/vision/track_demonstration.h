@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
+#include "base/error.h"
 #include "base/random.h"
 #include "demonstration/demonstration.h"
 #include "vision/fingertip_tracker.h"
@@ -50,8 +51,15 @@ struct TrackingSummary {
   CapShape cap;
 };
 
+// No caps were found.
+class NotTracked : public Error {
+ public:
+  using Error::Error;
+};
+
 // Tracks all frames. `hand` (root H, frames mmm_<finger>_tip) gives the pose of H; without it the
-// wrist stays absent. Throws Error if there is no frame or no caps were found within max_wait.
+// wrist stays absent. Throws Error if there is no frame, NotTracked if no caps were found within
+// max_wait.
 Demonstration TrackStereo(const FrameSource& source, const StereoCameras& cameras,
                           const KinematicTree* hand, const TrackDemonstrationOptions& options,
                           RandomEngine& engine, const InstantCallback& on_frame = {},

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "base/error.h"
+
 namespace springgrasp {
 namespace {
 
@@ -59,6 +61,17 @@ TEST(HandMotionTest, MovingMovesEverythingTogether) {
     EXPECT_TRUE(before.isApprox(after, 1e-12));
   }
   EXPECT_NEAR(moved.up.dot(X_VW.linear() * Eigen::Vector3d::UnitZ()), 1, 1e-12);
+}
+
+TEST(HandMotionTest, APeakSpeedStretchesTimeAndNothingElse) {
+  const HandMotion motion = Sliding(0.7);
+  const HandMotion faster = AtPeakSpeed(motion, 1.4);
+  ASSERT_EQ(faster.samples.size(), motion.samples.size());
+  EXPECT_NEAR(faster.samples.back().t, 0.5, 1e-9);
+  EXPECT_EQ(faster.samples.front().t, 0);
+  EXPECT_EQ(faster.samples[30].X_WH.matrix(), motion.samples[30].X_WH.matrix());
+  EXPECT_EQ(faster.samples[30].q, motion.samples[30].q);
+  EXPECT_THROW(AtPeakSpeed(Sliding(0), 1), Error);
 }
 
 // Position, speed and fingers run on without a jump, from an open hand at rest.

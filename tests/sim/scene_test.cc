@@ -227,5 +227,74 @@ TEST(SceneTest, BeliefIsTruthPlusError) {
   EXPECT_NEAR(b.friction, 1.2, 1e-12);
 }
 
+TEST(SceneEyesTest, AreIdealUnlessTheSceneSaysOtherwise) {
+  const SceneEyes e = ParseScene("torso: fixed\n", "s.yaml").eyes;
+  EXPECT_EQ(e.width, 640);
+  EXPECT_EQ(e.height, 480);
+  EXPECT_EQ(e.noise, 0);
+  EXPECT_EQ(e.exposure, 0);
+  for (const double k : e.distortion) EXPECT_EQ(k, 0);
+  EXPECT_EQ(e.brightness_drift + e.white_balance_drift + e.frame_drops + e.time_offset, 0);
+  EXPECT_EQ(e.calibration_error.rotation + e.calibration_error.focal, 0);
+  EXPECT_EQ(e.tracker, "outline");
+}
+
+TEST(SceneEyesTest, EveryKeyIsRead) {
+  const SceneEyes e = ParseScene(
+                          "eyes:\n"
+                          "  width: 1280\n  height: 720\n  noise: 6\n"
+                          "  distortion: [-0.25, 0.08, 0.001, 0.002, 0.01]\n"
+                          "  exposure: 0.01\n  subframes: 5\n"
+                          "  brightness_drift: 0.4\n  white_balance_drift: 0.1\n"
+                          "  frame_drops: 0.05\n  time_offset: 0.004\n"
+                          "  calibration_error: {rotation: 0.002, focal: -0.01}\n"
+                          "  tracker: paper\n",
+                          "s.yaml")
+                          .eyes;
+  EXPECT_EQ(e.width, 1280);
+  EXPECT_EQ(e.height, 720);
+  EXPECT_EQ(e.noise, 6);
+  EXPECT_EQ(e.distortion, (std::array<double, 5>{-0.25, 0.08, 0.001, 0.002, 0.01}));
+  EXPECT_EQ(e.exposure, 0.01);
+  EXPECT_EQ(e.subframes, 5);
+  EXPECT_EQ(e.brightness_drift, 0.4);
+  EXPECT_EQ(e.white_balance_drift, 0.1);
+  EXPECT_EQ(e.frame_drops, 0.05);
+  EXPECT_EQ(e.time_offset, 0.004);
+  EXPECT_EQ(e.calibration_error.rotation, 0.002);
+  EXPECT_EQ(e.calibration_error.focal, -0.01);
+  EXPECT_EQ(e.tracker, "paper");
+}
+
+TEST(SceneEyesTest, ErrorsNameWhatIsValid) {
+  const auto eyes = [](const std::string& key) { return MessageOf("eyes:\n  " + key + "\n"); };
+  EXPECT_THAT(eyes("width: 200"), AllOf(HasSubstr("scene.yaml:2"), HasSubstr("320")));
+  EXPECT_THAT(eyes("height: 1081"), HasSubstr("1080"));
+  EXPECT_THAT(eyes("distortion: [0.1, 0.2]"), HasSubstr("5 (k1 k2 p1 p2 k3)"));
+  EXPECT_THAT(eyes("frame_drops: 1"), HasSubstr("0.9"));
+  EXPECT_THAT(eyes("tracker: best"), AllOf(HasSubstr("outline"), HasSubstr("paper")));
+  EXPECT_THAT(eyes("blur: 3"), AllOf(HasSubstr("blur"), HasSubstr("exposure")));
+}
+
+TEST(SceneDemonstratorTest, MayBeElsewhereFasterHiddenAndCluttered) {
+  const SceneDemonstrator d = ParseScene(
+                                  "demonstrator:\n  distance: 0.8\n  speed: 1.5\n"
+                                  "  occlusion: {fingers: [index, pinkie], frames: 12}\n"
+                                  "  clutter: 5\n",
+                                  "s.yaml")
+                                  .demonstrator;
+  EXPECT_EQ(d.distance, 0.8);
+  EXPECT_EQ(d.speed, 1.5);
+  EXPECT_EQ(d.occlusion.fingers, (std::vector<int>{1, 4}));
+  EXPECT_EQ(d.occlusion.frames, 12);
+  EXPECT_EQ(d.clutter, 5);
+  EXPECT_EQ(ParseScene("demonstrator: {clutter: true}\n", "s.yaml").demonstrator.clutter, 8);
+  EXPECT_EQ(ParseScene("demonstrator: {clutter: false}\n", "s.yaml").demonstrator.clutter, 0);
+  EXPECT_THAT(MessageOf("demonstrator: {occlusion: {fingers: [indx]}}\n"),
+              AllOf(HasSubstr("indx"), HasSubstr("index")));
+  EXPECT_THAT(MessageOf("demonstrator: {clutter: many}\n"), HasSubstr("many"));
+  EXPECT_THAT(MessageOf("demonstrator: {speed: 0}\n"), HasSubstr("speed"));
+}
+
 }  // namespace
 }  // namespace springgrasp
