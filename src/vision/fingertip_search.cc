@@ -39,59 +39,66 @@ PerFinger<bool> FingertipTracker::Impl::FindDoubtful() const {
 void FingertipTracker::Impl::Reseed(const PerFinger<bool>& doubtful) {
   for (int v = 0; v < 2; ++v) {
     View& view = views[v];
-    PerFinger<double> window;
     for (int f = 0; f < kNumFingers; ++f) {
-      window[f] = 1.3 * RadiusPx(v, fingers[f].p_W);
       if (!doubtful[f]) continue;
       const auto pixel = Project(cameras.view(v), fingers[f].p_W + fingers[f].v_W);
       view.active[f] = pixel && view.roi.contains(cv::Point(static_cast<int>(pixel->x()),
                                                             static_cast<int>(pixel->y())));
       if (view.active[f]) view.region[f] = *pixel;
     }
-    const MeanShiftResult modes = MeanShift(view.likelihood, view.region, view.active, window);
-    view.mass = modes.mass;
-    view.region = modes.centre;
-    Judge(v);
+    Settle(v);
   }
   DropCollisions();
 }
 
-// Two regions that share one cap's pixels: it hides the one that is farther from the camera. Where
-// their depths do not tell, the region farther from where it should be goes.
+// All active regions to their modes, and judged there.
+void FingertipTracker::Impl::Settle(int v) {
+  View& view = views[v];
+  PerFinger<double> window;
+  for (int f = 0; f < kNumFingers; ++f) window[f] = 1.3 * RadiusPx(v, fingers[f].p_W);
+  const MeanShiftResult modes = MeanShift(view.likelihood, view.region, view.active, window);
+  view.mass = modes.mass;
+  view.region = modes.centre;
+  Judge(v);
+}
+
+// Two regions that share one cap's pixels: the finger whose cap it is not is hidden. That is the one
+// that should be elsewhere; where both should be here, the one farther from the camera. The other
+// takes the pixels over.
 void FingertipTracker::Impl::DropCollisions() {
-  constexpr double kDepthTells = 0.006;  // m
-  for (int f = 0; f < kNumFingers; ++f) {
-    for (int g = 0; g < f; ++g) {
-      for (int v = 0; v < 2; ++v) {
-        View& view = views[v];
+  constexpr double kElsewhere = 0.35;  // cap radii
+  std::array<bool, 2> dropped = {};
+  for (int v = 0; v < 2; ++v) {
+    View& view = views[v];
+    for (int f = 0; f < kNumFingers; ++f) {
+      for (int g = 0; g < f; ++g) {
         if (!view.active[f] || !view.active[g]) continue;
-        const double r = RadiusPx(v, fingers[f].p_W);
-        const double distance = (view.region[f] - view.region[g]).norm();
-        // Two halves of one cap are less than a radius apart and together no larger than it.
-        if (distance > 1.5 * r) continue;
         const int front = DepthOf(v, fingers[f].p_W) < DepthOf(v, fingers[g].p_W) ? f : g;
-        const double r_front = RadiusPx(v, fingers[front].p_W);
+        const double r = RadiusPx(v, fingers[front].p_W);
+        if ((view.region[f] - view.region[g]).norm() > 1.5 * r) continue;
         const auto area = [&](int finger) {
           const double own = RadiusPx(v, fingers[finger].p_W);
-          return view.mass[finger] * own * own / (r_front * r_front);
+          return view.mass[finger] * own * own / (r * r);
         };
-        if (area(f) + area(g) > kOneCap * CapArea(v, front)) continue;
-        const Eigen::Vector3d p_WFf = fingers[f].p_W + fingers[f].v_W;
-        const Eigen::Vector3d p_WFg = fingers[g].p_W + fingers[g].v_W;
-        const double behind = DepthOf(v, p_WFf) - DepthOf(v, p_WFg);
-        int loser = behind > 0 ? f : g;
-        if (std::abs(behind) < kDepthTells) {
-          const auto off = [&](int finger, const Eigen::Vector3d& p_W) {
-            const auto expected = Project(cameras.view(v), p_W);
-            const double lost = 4.0 * std::min(5, fingers[finger].lost_frames);
-            return (expected ? (*expected - view.region[finger]).norm() : 1e9) + lost;
-          };
-          loser = off(f, p_WFf) > off(g, p_WFg) ? f : g;
-        }
+        const double both = area(f) + area(g);
+        if (both > kOneCap * CapArea(v, front)) continue;
+        const Eigen::Vector2d cap_px =
+            (area(f) * view.region[f] + area(g) * view.region[g]) / std::max(1e-9, both);
+        const auto off = [&](int finger) {
+          const auto expected = Project(cameras.view(v), fingers[finger].p_W + fingers[finger].v_W);
+          const double lost = 0.5 * std::min(5, fingers[finger].lost_frames);
+          return (expected ? (*expected - cap_px).norm() / r : 1e9) + lost;
+        };
+        const double more = off(f) - off(g);
+        const int loser = more > kElsewhere ? f : more < -kElsewhere ? g : front == f ? g : f;
         view.active[loser] = false;
         view.mass[loser] = view.similarity[loser] = 0;
+        dropped[v] = true;
       }
     }
+  }
+  for (int v = 0; v < 2; ++v) {
+    if (dropped[v]) Settle(v);
   }
 }
 
@@ -134,7 +141,7 @@ void FingertipTracker::Impl::Search() {
   // All ways to give the doubtful fingers a pair of blobs, or none; the cheapest.
   struct Choice {
     int left, right;
-    Eigen::Vector3d p_W;
+    Eigen::Vector3d off;  // m, from where the finger should be
     double cost;
   };
   PerFinger<std::vector<Choice>> choices;
@@ -150,12 +157,27 @@ void FingertipTracker::Impl::Search() {
         if (off > options.max_epipolar_px) continue;
         const auto point = Triangulate(cameras, l, r);
         if (!point) continue;
-        const double distance = (point->p_WQ - expected).norm() / reach;
-        if (distance > 1) continue;
-        choices[f].push_back({i, j, point->p_WQ, distance * distance + 0.05 * off * off});
+        const Eigen::Vector3d away = point->p_WQ - expected;
+        if (away.norm() > reach) continue;
+        choices[f].push_back({i, j, away, away.squaredNorm() / (reach * reach) + 0.05 * off * off});
       }
     }
   }
+  // Fingers that come back together are off in the same way: their differences tell more than how far
+  // they are off. Two neighbours are some 20 mm apart.
+  constexpr double kApart = 0.012;  // m
+  const auto disagreement = [&](const PerFinger<const Choice*>& chosen) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    int count = 0;
+    for (const Choice* choice : chosen) {
+      if (choice != nullptr) mean += choice->off, ++count;
+    }
+    double sum = 0;
+    for (const Choice* choice : chosen) {
+      if (choice != nullptr) sum += (choice->off - mean / count).squaredNorm();
+    }
+    return sum / (kApart * kApart);
+  };
   // Where fingers should cross, their crossing costs nothing.
   std::array<bool, 2> in_order;
   for (int v = 0; v < 2; ++v) {
@@ -171,6 +193,7 @@ void FingertipTracker::Impl::Search() {
   const auto assign = [&](auto&& self, int f, double cost) -> void {
     if (cost >= best_cost) return;
     if (f == kNumFingers) {
+      cost += disagreement(current);
       for (int v = 0; v < 2; ++v) {
         Regions regions = views[v].region;
         PerFinger<bool> seen = {};
@@ -206,9 +229,7 @@ void FingertipTracker::Impl::Search() {
 
   for (int v = 0; v < 2; ++v) {
     View& view = views[v];
-    PerFinger<double> window;
     for (int f = 0; f < kNumFingers; ++f) {
-      window[f] = 1.3 * RadiusPx(v, fingers[f].p_W);
       if (!doubtful[f]) continue;
       view.active[f] = best[f] != nullptr;
       if (best[f] == nullptr) continue;
@@ -216,13 +237,9 @@ void FingertipTracker::Impl::Search() {
       view.motion[f].setZero();
       for (Regions& particle : view.particles.regions) particle[f] = view.region[f];
     }
-    const MeanShiftResult modes = MeanShift(view.likelihood, view.region, view.active, window);
-    for (int f = 0; f < kNumFingers; ++f) {
-      if (view.active[f]) view.region[f] = modes.centre[f];
-      view.mass[f] = modes.mass[f];
-    }
-    Judge(v);
+    Settle(v);
   }
+  DropCollisions();
 }
 
 // Caps that touch are two radii apart: fingers measured within one of each other stand on a single
@@ -243,7 +260,8 @@ void FingertipTracker::Impl::DropShared(TrackedFrame& frame) {
 }
 
 // Fingers pass each other, but they do not stay crossed: where both views have long seen the same
-// wrong order about the palm, the labels were exchanged while caps were not seen.
+// wrong order about the palm, and since it was right all those concerned were lost at some time, the
+// labels were exchanged then. Fingers that were seen all the time have indeed crossed.
 void FingertipTracker::Impl::RestoreOrder() {
   constexpr int kLong = 6;  // frames, 0.2 s at 30 Hz
   const PerFinger<bool> four = {false, true, true, true, true};
@@ -256,6 +274,12 @@ void FingertipTracker::Impl::RestoreOrder() {
     order[v] = OrderAboutPalm(view.region, PalmPixel(v), turn[v]);
   }
   crossed = crossed && order[0] == order[1];
+  for (int f = kIndex; f < kNumFingers; ++f) {
+    FingerState& state = fingers[f];
+    const bool seen = views[0].active[f] && views[1].active[f];
+    state.was_lost = !seen || (state.was_lost && order[0][f] != f);
+    crossed = crossed && (order[0][f] == f || state.was_lost);
+  }
   disordered_frames = crossed ? disordered_frames + 1 : 0;
   if (disordered_frames < kLong) return;
   disordered_frames = 0;

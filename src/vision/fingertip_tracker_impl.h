@@ -55,6 +55,7 @@ struct FingerState {
   Eigen::Vector3d v_W = Eigen::Vector3d::Zero();  // m per frame
   Eigen::Vector3d axis_W = Eigen::Vector3d::UnitX();
   int lost_frames = 0;
+  bool was_lost = false;  // since it was last seen in order
   double radius = 0;  // m, of this cap
   int radius_count = 0;
 };
@@ -122,6 +123,7 @@ struct FingertipTracker::Impl {
   TrackedFrame Update(const cv::Mat& left, const cv::Mat& right, RandomEngine& engine);
   void TrackView(int v, const cv::Mat& bgr, RandomEngine& engine);
   void Judge(int v);
+  void Settle(int v);
   void Search();
   PerFinger<bool> FindDoubtful() const;
   void Reseed(const PerFinger<bool>& doubtful);

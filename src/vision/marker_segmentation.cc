@@ -59,6 +59,17 @@ std::vector<MarkerBlob> SegmentMarkers(const cv::Mat& likelihood, double min_are
   return blobs;
 }
 
+double InscribedRadius(const cv::Mat& likelihood, const cv::Rect& box) {
+  cv::Mat binary, distance;
+  cv::threshold(likelihood(box), binary, 127, 255, cv::THRESH_BINARY);
+  cv::copyMakeBorder(binary, binary, 1, 1, 1, 1, cv::BORDER_CONSTANT, 0);
+  cv::distanceTransform(binary, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  double largest = 0;
+  cv::minMaxLoc(distance, nullptr, &largest);
+  // To the middle of the nearest pixel outside, which lies a little beyond the edge.
+  return std::max(0.0, largest - 0.1);
+}
+
 std::vector<MarkerPair> PairMarkers(const StereoCameras& cameras,
                                     const std::vector<MarkerBlob>& left,
                                     const std::vector<MarkerBlob>& right, double max_epipolar_px) {
