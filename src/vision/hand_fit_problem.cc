@@ -148,7 +148,7 @@ HandFitProblem::HandFitProblem(const HandModel& model, const StereoCameras& came
     if (field.mask == nullptr) continue;
     num_residuals_ += static_cast<int>(model.balls.size() + field.samples.size()) + 1;
   }
-  num_residuals_ += 6 + 2 * n_ + static_cast<int>(model.coupled.size()) + 3;
+  num_residuals_ += 6 + 2 * n_ + static_cast<int>(model.coupled.size() + model.neighbours.size()) + 3;
   node_motion_.assign(model.tree.nodes.size(), {});
   for (std::size_t b = 0; b < model.tree.nodes.size(); ++b) {
     for (int a = static_cast<int>(b); a >= 0; a = model.tree.nodes[a].parent) {
@@ -239,6 +239,14 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
     }
     ++row;
   }
+  for (const auto& [a, b] : model_.neighbours) {
+    r[row] = (fit.q[a] - fit.q[b]) / options_.neighbour_sigma;
+    if (J != nullptr) {
+      (*J)(row, 6 + a) = 1 / options_.neighbour_sigma;
+      (*J)(row, 6 + b) = -1 / options_.neighbour_sigma;
+    }
+    ++row;
+  }
   // While it is free the scale also stays near that of the model, an adult's.
   constexpr double kScaleSigma = 0.04;
   const double tie = first_ ? 1e3 : fit_scale_ ? 0.005 : 1e-6;
@@ -250,15 +258,11 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
     if (J != nullptr) (*J)(row, 6 + n_) = 1 / kScaleSigma;
   }
   ++row;
-  if (first_) {
-    constexpr double kPalmSigma = 0.35;  // of 1 - cosine: 50 degrees
-    const Eigen::Vector3d forward = cameras_.left.X_WC.linear().col(2);
-    const Eigen::Vector3d back = fit.X_WH.linear().col(2);
-    r[row] = (1 - back.dot(forward)) / kPalmSigma;
-    if (J != nullptr) {
-      J->block<1, 3>(row, 3) = forward.transpose() * Cross(back) * Jl_ / kPalmSigma;
-    }
-  }
+  const double palm_sigma = first_ ? options_.first_palm_sigma : options_.palm_sigma;
+  const Eigen::Vector3d forward = cameras_.left.X_WC.linear().col(2);
+  const Eigen::Vector3d back = fit.X_WH.linear().col(2);
+  r[row] = (1 - back.dot(forward)) / palm_sigma;
+  if (J != nullptr) J->block<1, 3>(row, 3) = forward.transpose() * Cross(back) * Jl_ / palm_sigma;
 }
 
 void HandFitProblem::AddBalls(const HandFit& fit, int view, int row, Eigen::VectorXd& r,

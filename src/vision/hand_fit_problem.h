@@ -36,9 +36,9 @@ HandFields MakeFields(const StereoCameras& cameras, const HandObservation& obser
 //   sleeve        1 per view      where the bare forearm ends, signed distance from the mask's edge
 //   motion        6               deviation from the predicted pose
 //   joints        2 n             deviation from the last and from the resting posture
-//   couplings     1 each          DIP - 2/3 PIP
+//   couplings     1 each          DIP - 2/3 PIP; difference of neighbouring fingers
 //   scale         2               deviation from the last one and from the model's
-//   palm          1               back of the hand faces away from the cameras (first frame)
+//   palm          1               back of the hand faces away from the cameras
 class HandFitProblem {
  public:
   HandFitProblem(const HandModel& model, const StereoCameras& cameras,

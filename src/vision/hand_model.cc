@@ -99,6 +99,13 @@ HandModel MakeHandModel(const KinematicTree& tree, const Eigen::VectorXd& rest) 
     middle.replace(middle.find("_dip"), 4, "_pip");
     model.coupled.emplace_back(tree.JointIndex(middle), j);
   }
+  for (int f = kIndex; f + 1 < kNumFingers; ++f) {
+    for (const char* joint : {"_mcp", "_pip"}) {
+      model.neighbours.emplace_back(
+          tree.JointIndex("mmm_" + std::string(kFingerNames[f]) + joint),
+          tree.JointIndex("mmm_" + std::string(kFingerNames[f + 1]) + joint));
+    }
+  }
   return model;
 }
 

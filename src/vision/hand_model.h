@@ -27,6 +27,8 @@ struct HandModel {
   Eigen::VectorXd rest_sigma;   // rad: how surely
   // Pairs (PIP, DIP): the end joint follows the middle one by two thirds.
   std::vector<std::pair<int, int>> coupled;
+  // The same joint of neighbouring fingers (MCP, PIP; index to pinkie): they bend alike, loosely.
+  std::vector<std::pair<int, int>> neighbours;
   // Where the bare forearm ends on the x axis of H (negative, m, for scale 1), once it is known.
   std::optional<double> sleeve_x;
 };

@@ -107,9 +107,12 @@ void SegmentHand(const cv::Mat& bgr, const SkinModel& skin, const MarkerColour& 
     std::uint8_t* out = hand.mask.ptr(i);
     for (int j = 0; j < cols; ++j, pixel += 3 * step) {
       const bool cap = caps.likelihood[MarkerColour::Index(pixel)] > 127;
-      out[j] = cap || skin.Of(pixel[0], pixel[1], pixel[2]) > 127 ? 255 : 0;
+      out[j] = cap ? 255 : skin.Of(pixel[0], pixel[1], pixel[2]);
     }
   }
+  // Noise of single pixels is not the hand's outline.
+  cv::blur(hand.mask, hand.mask, {3, 3});
+  cv::threshold(hand.mask, hand.mask, 127, 255, cv::THRESH_BINARY);
   const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_ELLIPSE, {3, 3});
   cv::morphologyEx(hand.mask, hand.mask, cv::MORPH_OPEN, kernel);
   // Keep what touches a cap.
