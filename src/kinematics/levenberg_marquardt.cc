@@ -23,7 +23,9 @@ LevenbergMarquardtResult MinimizeLeastSquares(const LeastSquaresProblem& problem
   while (result.iterations < options.max_iterations) {
     ++result.iterations;
     gradient.noalias() = J.transpose() * r;
-    A.noalias() = J.transpose() * J;
+    A.setZero();
+    A.selfadjointView<Eigen::Lower>().rankUpdate(J.transpose());
+    A.triangularView<Eigen::StrictlyUpper>() = A.transpose();
     // Hold variables that press against their bound.
     double largest_gradient = 0;
     for (Eigen::Index i = 0; i < n; ++i) {

@@ -266,18 +266,18 @@ void FingertipTracker::Impl::RestoreOrder() {
   constexpr int kLong = 6;  // frames, 0.2 s at 30 Hz
   const PerFinger<bool> four = {false, true, true, true, true};
   std::array<PerFinger<int>, 2> order;
-  bool crossed = true;
+  bool all_seen = true, crossed = true;
   for (int v = 0; v < 2; ++v) {
     const View& view = views[v];
-    crossed = crossed && std::count(view.active.begin() + kIndex, view.active.end(), true) == 4 &&
-              !InFingerOrder(view.region, four, PalmPixel(v), turn[v]);
+    all_seen = all_seen && std::count(view.active.begin() + kIndex, view.active.end(), true) == 4;
+    crossed = crossed && !InFingerOrder(view.region, four, PalmPixel(v), turn[v]);
     order[v] = OrderAboutPalm(view.region, PalmPixel(v), turn[v]);
   }
-  crossed = crossed && order[0] == order[1];
+  crossed = crossed && all_seen && order[0] == order[1];
   for (int f = kIndex; f < kNumFingers; ++f) {
     FingerState& state = fingers[f];
-    const bool seen = views[0].active[f] && views[1].active[f];
-    state.was_lost = !seen || (state.was_lost && order[0][f] != f);
+    if (!views[0].active[f] || !views[1].active[f]) state.was_lost = true;
+    if (all_seen && order[0][f] == f) state.was_lost = false;
     crossed = crossed && (order[0][f] == f || state.was_lost);
   }
   disordered_frames = crossed ? disordered_frames + 1 : 0;

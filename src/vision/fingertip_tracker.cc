@@ -38,13 +38,14 @@ std::optional<TrackedFrame> FingertipTracker::Impl::Start(const cv::Mat& left,
 
   // Colour model from the chosen caps against the whole of the left picture.
   cv::Mat mask = cv::Mat::zeros(left.size(), CV_8UC1);
-  double radius_px = 0;
+  double radius_px = 0, radius_by_area = 0;
   PerFinger<double> radii;
   std::vector<Eigen::Vector2d> cap_px;
   PerFinger<Eigen::Vector2d> caps_left, caps_right;
   for (int i = 0; i < kNumFingers; ++i) {
     const MarkerBlob& blob = blobs[0][(*chosen)[i].left];
     views[0].likelihood(blob.box).copyTo(mask(blob.box));
+    radius_by_area += (*chosen)[i].radius / kNumFingers;
     radii[i] = 0;
     for (int v = 0; v < 2; ++v) {
       const cv::Rect& box = blobs[v][v == 0 ? (*chosen)[i].left : (*chosen)[i].right].box;
@@ -59,7 +60,10 @@ std::optional<TrackedFrame> FingertipTracker::Impl::Start(const cv::Mat& left,
   LearnMarkerColour(left, mask, colour);
   // Some caps may be half hidden, and two that touch look like a larger one.
   std::sort(radii.begin(), radii.end());
-  if (cap.radius <= 0) cap.radius = 0.5 * (radii[2] + radii[3]);
+  // A thimble seen from somewhere between its side and its tip covers a fifth more than a disc.
+  if (cap.radius <= 0) {
+    cap.radius = std::max(0.5 * (radii[2] + radii[3]), radius_by_area / std::sqrt(1.2));
+  }
 
   // The palm: widest place of the skin near the caps, else the middle of the caps' arc.
   skin = LearnSkin(left, colour, cap_px, radius_px);

@@ -30,9 +30,9 @@ struct HandPoseOptions {
   double pose_sigma = 0.009;  // m per frame, about the predicted position
   double turn_sigma = 0.09;   // rad per frame
   double joint_sigma = 0.15;  // rad per frame
-  double mask_step = 0.15;    // resolution of the masks, in radii of a cap
-  int mask_samples = 120;     // on the outline, per view
-  int iterations = 8;         // Levenberg-Marquardt, per frame
+  double mask_step = 0.2;     // resolution of the masks, in radii of a cap
+  int mask_samples = 80;      // on the outline, per view
+  int iterations = 5;         // Levenberg-Marquardt, per frame
   int start_iterations = 25;  // of each start in the first frame
 };
 

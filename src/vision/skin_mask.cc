@@ -25,10 +25,6 @@ bool MayBeSkin(int b, int g, int r) {
 
 }  // namespace
 
-std::uint8_t SkinModel::Of(std::uint8_t b, std::uint8_t g, std::uint8_t r) const {
-  return b + g + r > 60 ? likelihood[ChromaBin(b, g, r)] : 0;
-}
-
 SkinModel LearnSkin(const cv::Mat& bgr, const MarkerColour& caps,
                     const std::vector<Eigen::Vector2d>& cap_px, double cap_radius_px) {
   constexpr int kBins = SkinModel::kSide * SkinModel::kSide;
@@ -61,6 +57,13 @@ SkinModel LearnSkin(const cv::Mat& bgr, const MarkerColour& caps,
   for (int i = 0; i < kBins; ++i) {
     const float p_near = near[i] / total_near, p_far = far[i] / total_far;
     skin.likelihood[i] = static_cast<std::uint8_t>(255 * p_near / (p_near + p_far + 2e-4F));
+  }
+  skin.table.resize(1 << 18);
+  for (int i = 0; i < 1 << 18; ++i) {
+    const auto level = [](int bits) { return 4 * (bits & 63) + 2; };
+    const int b = level(i >> 12), g = level(i >> 6), r = level(i);
+    skin.table[static_cast<std::size_t>(i)] =
+        b + g + r > 60 ? skin.likelihood[ChromaBin(b, g, r)] : std::uint8_t{0};
   }
   return skin;
 }

@@ -13,11 +13,15 @@
 
 namespace springgrasp {
 
-// Likelihood 0..255 of skin over the shares of red and green; brightness is left out.
+// Likelihood 0..255 of skin over the shares of red and green; brightness is left out. Asked for by
+// a table of colours with six bits per channel, since the shares need divisions.
 struct SkinModel {
   static constexpr int kSide = 64;
   std::array<std::uint8_t, kSide* kSide> likelihood = {};
-  std::uint8_t Of(std::uint8_t b, std::uint8_t g, std::uint8_t r) const;
+  std::vector<std::uint8_t> table;  // [2^18], of `likelihood`; empty: no colour is skin
+  std::uint8_t Of(std::uint8_t b, std::uint8_t g, std::uint8_t r) const {
+    return table.empty() ? std::uint8_t{0} : table[(b >> 2) << 12 | (g >> 2) << 6 | r >> 2];
+  }
 };
 
 // Skin among the pixels within 2.5 cap radii of the caps (a wide gate says which),
