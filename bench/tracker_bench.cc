@@ -37,9 +37,8 @@ Recording& TheRecording() {
 }
 
 void CountPairs(benchmark::State& state, std::size_t per_iteration) {
-  state.counters["pairs_per_s"] =
-      benchmark::Counter(static_cast<double>(state.iterations()) * double(per_iteration),
-                         benchmark::Counter::kIsRate);
+  state.counters["pairs_per_s"] = benchmark::Counter(
+      static_cast<double>(state.iterations()) * double(per_iteration), benchmark::Counter::kIsRate);
 }
 
 // BGR to HSV of both pictures, back-projection of the caps' hue, one mean shift per finger and

@@ -76,7 +76,7 @@ CapContour TraceCap(const cv::Mat& bgr, const MarkerColour& colour, const Eigen:
     return p.x() >= 0 && p.y() >= 0 && p.x() < bgr.cols - 1 && p.y() < bgr.rows - 1;
   };
   // Purity: chroma over brightness, which shading leaves alone. First along whole pixels.
-  constexpr int kMaxWalk = 64;  // px
+  constexpr int kMaxWalk = 64;   // px
   constexpr double kStep = 0.5;  // px, of the profile across the edge
   const int wanted = std::min(kMaxWalk, static_cast<int>(reach_px) + 1);
   std::array<Eigen::Vector3f, 10> profile;

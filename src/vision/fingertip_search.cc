@@ -62,9 +62,9 @@ void FingertipTracker::Impl::Settle(int v) {
   Judge(v);
 }
 
-// Two regions that share one cap's pixels: the finger whose cap it is not is hidden. That is the one
-// that should be elsewhere; where both should be here, the one farther from the camera. The other
-// takes the pixels over.
+// Two regions that share one cap's pixels: the finger whose cap it is not is hidden. That is the
+// one that should be elsewhere; where both should be here, the one farther from the camera. The
+// other takes the pixels over.
 void FingertipTracker::Impl::DropCollisions() {
   constexpr double kElsewhere = 0.35;  // cap radii
   std::array<bool, 2> dropped = {};
@@ -163,8 +163,8 @@ void FingertipTracker::Impl::Search() {
       }
     }
   }
-  // Fingers that come back together are off in the same way: their differences tell more than how far
-  // they are off. Two neighbours are some 20 mm apart.
+  // Fingers that come back together are off in the same way: their differences tell more than how
+  // far they are off. Two neighbours are some 20 mm apart.
   constexpr double kApart = 0.012;  // m
   const auto disagreement = [&](const PerFinger<const Choice*>& chosen) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -260,8 +260,8 @@ void FingertipTracker::Impl::DropShared(TrackedFrame& frame) {
 }
 
 // Fingers pass each other, but they do not stay crossed: where both views have long seen the same
-// wrong order about the palm, and since it was right all those concerned were lost at some time, the
-// labels were exchanged then. Fingers that were seen all the time have indeed crossed.
+// wrong order about the palm, and since it was right all those concerned were lost at some time,
+// the labels were exchanged then. Fingers that were seen all the time have indeed crossed.
 void FingertipTracker::Impl::RestoreOrder() {
   constexpr int kLong = 6;  // frames, 0.2 s at 30 Hz
   const PerFinger<bool> four = {false, true, true, true, true};

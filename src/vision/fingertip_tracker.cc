@@ -122,8 +122,9 @@ void FingertipTracker::Impl::Judge(int v) {
     view.mass[f] /= std::numbers::pi * r * r;
     const Histogram histogram = RegionHistogram(view.bins, view.region[f], 0.8 * r);
     view.similarity[f] = Bhattacharyya(histogram, colour.model);
-    view.active[f] =
-        view.mass[f] >= options.min_mass && view.similarity[f] >= options.min_similarity;
+    // After a while out of sight a sliver might as well be a neighbour's.
+    const double least = options.min_mass * (fingers[f].lost_frames >= 3 ? kReturning : 1);
+    view.active[f] = view.mass[f] >= least && view.similarity[f] >= options.min_similarity;
   }
 }
 

@@ -22,8 +22,8 @@
 
 namespace springgrasp {
 
-// kPaper: section III-B and no more, fingertips are the triangulated regions, followed on their own.
-// kOutline: positions by the outline fit, and what the fit of the whole hand says is used.
+// kPaper: section III-B and no more, fingertips are the triangulated regions, followed on their
+// own. kOutline: positions by the outline fit, and what the fit of the whole hand says is used.
 enum class TrackerKind { kOutline, kPaper };
 inline constexpr std::array<std::string_view, 2> kTrackerKinds = {"outline", "paper"};
 

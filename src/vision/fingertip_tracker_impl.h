@@ -28,7 +28,9 @@ struct View {
   PerFinger<double> similarity = {};  // of the colour
 };
 
-inline constexpr double kOneCap = 1.2;  // two regions with no more pixels than this share a cap
+inline constexpr double kReturning =
+    1.8;                                  // of TrackerOptions::min_mass, for a finger that was lost
+inline constexpr double kOneCap = 1.2;    // two regions with no more pixels than this share a cap
 inline constexpr int kRadiusFrames = 20;  // over which a cap's size is averaged
 
 inline constexpr double kHintShare = 0.5;     // of the hand fit in a finger's direction
@@ -56,7 +58,7 @@ struct FingerState {
   Eigen::Vector3d axis_W = Eigen::Vector3d::UnitX();
   int lost_frames = 0;
   bool was_lost = false;  // since it was last seen in order
-  double radius = 0;  // m, of this cap
+  double radius = 0;      // m, of this cap
   int radius_count = 0;
 };
 

@@ -148,7 +148,8 @@ HandFitProblem::HandFitProblem(const HandModel& model, const StereoCameras& came
     if (field.mask == nullptr) continue;
     num_residuals_ += static_cast<int>(model.balls.size() + field.samples.size()) + 1;
   }
-  num_residuals_ += 6 + 2 * n_ + static_cast<int>(model.coupled.size() + model.neighbours.size()) + 3;
+  num_residuals_ +=
+      6 + 2 * n_ + static_cast<int>(model.coupled.size() + model.neighbours.size()) + 3;
   node_motion_.assign(model.tree.nodes.size(), {});
   for (std::size_t b = 0; b < model.tree.nodes.size(); ++b) {
     for (int a = static_cast<int>(b); a >= 0; a = model.tree.nodes[a].parent) {
@@ -315,8 +316,7 @@ void HandFitProblem::AddSleeve(const HandFit& fit, int view, int row, Eigen::Vec
   constexpr double kReach = 20, kBorder = 12;  // px
   const CameraModel& camera = cameras_.view(view);
   const MaskField& field = fields_[view];
-  const Eigen::Vector3d p_W =
-      fit.X_WH * Eigen::Vector3d(fit.scale * *model_.sleeve_x, 0, 0);
+  const Eigen::Vector3d p_W = fit.X_WH * Eigen::Vector3d(fit.scale * *model_.sleeve_x, 0, 0);
   Eigen::Matrix<double, 2, 3> J_pixel;
   const auto pixel = Project(camera, p_W, &J_pixel);
   if (!pixel) return;
@@ -343,8 +343,8 @@ void HandFitProblem::AddRow(const HandFit& fit, int node, const Eigen::Vector3d&
   J.block<1, 3>(row, 3) = lever.cross(slope_W).transpose() * Jl_;
   for (const int a : node_motion_[static_cast<std::size_t>(node)]) {
     const KinematicTree::Node& joint = scaled_.nodes[a];
-    J(row, 6 + joint.joint) = joint.slide ? axis_W_[a].dot(slope_W)
-                                          : axis_W_[a].cross(p_W - origin_W_[a]).dot(slope_W);
+    J(row, 6 + joint.joint) =
+        joint.slide ? axis_W_[a].dot(slope_W) : axis_W_[a].cross(p_W - origin_W_[a]).dot(slope_W);
   }
   J(row, 6 + n_) = lever.dot(slope_W);  // all lengths from H grow with exp(log scale)
 }

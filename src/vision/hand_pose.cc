@@ -38,9 +38,9 @@ constexpr int kWayOutEvery = 3;  // frames
 // out is tried, about the fingertips. The better of both, judged by this frame alone, since the
 // past led into the wrong one.
 HandFit TryWayOut(const HandModel& model, const StereoCameras& cameras,
-                  const HandObservation& observation, const HandFields& fields,
-                  const HandFit& last, const Pose& X_predicted, bool fit_scale,
-                  const HandPoseOptions& options, const HandFit& fit) {
+                  const HandObservation& observation, const HandFields& fields, const HandFit& last,
+                  const Pose& X_predicted, bool fit_scale, const HandPoseOptions& options,
+                  const HandFit& fit) {
   struct Way {
     Eigen::Vector3d shift, turn;  // m and rad, in H
   };
@@ -67,7 +67,8 @@ HandFit TryWayOut(const HandModel& model, const StereoCameras& cameras,
   free.pose_sigma *= kFree;
   free.turn_sigma *= kFree;
   free.joint_sigma *= kFree;
-  HandFitProblem now(model, cameras, observation, fields, last, X_predicted, fit_scale, false, free);
+  HandFitProblem now(model, cameras, observation, fields, last, X_predicted, fit_scale, false,
+                     free);
   other = Solve(now, model, other, 2 * options.iterations);
   constexpr double kClearlyBetter = 1.5;
   return other.cost < Solve(now, model, fit, 0).cost - kClearlyBetter ? other : fit;
@@ -172,8 +173,8 @@ HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
   start.X_WH = X_predicted;
   HandFit fit = Solve(problem, model, start, options.iterations);
   if (tips >= 3 && last.frame % kWayOutEvery == 0) {
-    fit = TryWayOut(model, cameras, observation, fields, last, X_predicted, fit_scale, options,
-                    fit);
+    fit =
+        TryWayOut(model, cameras, observation, fields, last, X_predicted, fit_scale, options, fit);
   }
   fit.frame = last.frame + 1;
   JudgeTips(model, observation, fit);

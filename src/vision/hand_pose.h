@@ -19,21 +19,21 @@ namespace springgrasp {
 
 // Tuned on the four grasps of experiments/tracking, clean and moderate, seeds 31 to 33.
 struct HandPoseOptions {
-  double tip_sigma = 0.003;   // m, of a fully trusted fingertip
-  double ball_sigma_px = 5;   // of a ball outside the mask
-  double skin_sigma_px = 4;   // of the mask's outline off that of the balls
-  double sleeve_sigma_px = 2;  // of the end of the bare forearm off the mask's edge
-  double mask_reach_px = 7;   // beyond, a mask residual says no more: objects hide the hand
-  double neighbour_sigma = 0.2;    // rad, between the same joint of two neighbouring fingers
+  double tip_sigma = 0.003;        // m, of a fully trusted fingertip
+  double ball_sigma_px = 5;        // of a ball outside the mask
+  double skin_sigma_px = 4;        // of the mask's outline off that of the balls
+  double sleeve_sigma_px = 4;      // of the end of the bare forearm off the mask's edge
+  double mask_reach_px = 7;        // beyond, a mask residual says no more: objects hide the hand
+  double neighbour_sigma = 0.15;   // rad, between the same joint of two neighbouring fingers
   double first_palm_sigma = 0.35;  // of 1 - cosine of palm and line of sight: 50 degrees
   double palm_sigma = 0.4;         // the same after the first frame
-  double pose_sigma = 0.009;  // m per frame, about the predicted position
-  double turn_sigma = 0.09;   // rad per frame
-  double joint_sigma = 0.15;  // rad per frame
-  double mask_step = 0.2;     // resolution of the masks, in radii of a cap
-  int mask_samples = 80;      // on the outline, per view
-  int iterations = 5;         // Levenberg-Marquardt, per frame
-  int start_iterations = 25;  // of each start in the first frame
+  double pose_sigma = 0.009;       // m per frame, about the predicted position
+  double turn_sigma = 0.09;        // rad per frame
+  double joint_sigma = 0.15;       // rad per frame
+  double mask_step = 0.2;          // resolution of the masks, in radii of a cap
+  int mask_samples = 80;           // on the outline, per view
+  int iterations = 8;              // Levenberg-Marquardt, per frame
+  int start_iterations = 25;       // of each start in the first frame
 };
 
 // What one stereo frame says.

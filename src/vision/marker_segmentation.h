@@ -24,8 +24,8 @@ struct MarkerBlob {
 std::vector<MarkerBlob> SegmentMarkers(const cv::Mat& likelihood, double min_area,
                                        cv::Rect region = {});
 
-// Radius of the largest disc within the blob in `box`, px: a cap's radius from wherever it is seen, as
-// long as not more than half of its width is hidden.
+// Radius of the largest disc within the blob in `box`, px: a cap's radius from wherever it is seen,
+// as long as not more than half of its width is hidden.
 double InscribedRadius(const cv::Mat& likelihood, const cv::Rect& box);
 
 // A blob of the left and one of the right picture that may be the same cap.
