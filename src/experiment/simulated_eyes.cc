@@ -84,31 +84,33 @@ void SimulatedEyes::Show(std::size_t frame) {
   stage_.Show(shown_.samples[frame], motion_.object, IsCovered(frame));
 }
 
-// Nothing moves by what could be seen while the shutter is open.
-bool SimulatedEyes::IsStill(std::size_t frame) const {
-  const double t = shown_.samples[frame].t, half = settings_.exposure / 2;
-  const HandMotionSample a = Interpolated(motion_, t - half + std::min(0.0, settings_.time_offset));
-  const HandMotionSample b = Interpolated(motion_, t + half + std::max(0.0, settings_.time_offset));
-  constexpr double kStill = 5e-5, kReach = 0.2;  // m
-  const double turn = Eigen::AngleAxisd(a.X_WH.linear().transpose() * b.X_WH.linear()).angle();
-  return (a.X_WH.translation() - b.X_WH.translation()).norm() +
-             kReach * (turn + (a.q - b.q).cwiseAbs().maxCoeff()) <
-         kStill;
+// One per pixel that the fastest fingertip moves while the shutter is open.
+int SimulatedEyes::SubframeCount(int eye, double t) const {
+  const HandMotionSample a = Interpolated(motion_, t - settings_.exposure / 2);
+  const HandMotionSample b = Interpolated(motion_, t + settings_.exposure / 2);
+  const HandShape begin = ComputeHandShape(stage_.hand(), a.q);
+  const HandShape end = ComputeHandShape(stage_.hand(), b.q);
+  const CameraModel& camera = stage_.pinholes().view(eye);
+  double farthest = 0;  // px
+  for (int f = 0; f < kNumFingers; ++f) {
+    const auto from = Project(camera, a.X_WH * begin.tips[f]);
+    const auto to = Project(camera, b.X_WH * end.tips[f]);
+    if (from && to) farthest = std::max(farthest, (*to - *from).norm());
+  }
+  return std::clamp(static_cast<int>(std::ceil(farthest)), 1, settings_.subframes);
 }
 
 cv::Mat SimulatedEyes::Exposed(int eye, std::size_t frame) {
   const double late = eye == 1 ? settings_.time_offset : 0;
   const double t = shown_.samples[frame].t + late;
-  if (settings_.exposure == 0 || IsStill(frame)) {
-    if (late == 0) {
-      Show(frame);
-    } else {
-      stage_.Show(Interpolated(motion_, t), motion_.object, IsCovered(frame));
-    }
+  const int count = settings_.exposure > 0 ? SubframeCount(eye, t) : 1;
+  if (count == 1) {
+    stage_.Show(late == 0 ? shown_.samples[frame] : Interpolated(motion_, t), motion_.object,
+                IsCovered(frame));
     return stage_.Picture(eye);
   }
   PictureMean mean;
-  for (const double dt : SubframeTimes(settings_.exposure, settings_.subframes)) {
+  for (const double dt : SubframeTimes(settings_.exposure, count)) {
     stage_.Show(Interpolated(motion_, t + dt), motion_.object, IsCovered(frame));
     mean.Add(stage_.Picture(eye));
   }

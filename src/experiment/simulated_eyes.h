@@ -39,7 +39,7 @@ class SimulatedEyes {
 
  private:
   cv::Mat Exposed(int eye, std::size_t frame);
-  bool IsStill(std::size_t frame) const;
+  int SubframeCount(int eye, double t) const;
 
   ObserveStage& stage_;
   SceneEyes settings_;

@@ -97,9 +97,9 @@ std::string FormatTracking(const std::vector<TrackingFrame>& frames) {
   text += ",wrist_m,rotation_rad,swapped\n";
   for (const TrackingFrame& frame : frames) {
     text += fmt::format("{:.6f}", frame.t);
-    for (const auto& error : frame.error) text += "," + Cell(error);
+    for (const auto& error : frame.error) text.append(",").append(Cell(error));
     for (const double visible : frame.visible) text += fmt::format(",{:.3f}", visible);
-    text += "," + Cell(frame.wrist) + "," + Cell(frame.rotation) + ",";
+    text += fmt::format(",{},{},", Cell(frame.wrist), Cell(frame.rotation));
     std::vector<std::string_view> names;
     for (int f = 0; f < kNumFingers; ++f) {
       if (frame.swapped[f]) names.push_back(kFingerNames[f]);

@@ -125,17 +125,52 @@ struct CameraRenderer::Impl {
                                    scene.geoms);
   }
 
+  // Pixels that the scene's only geom covers, read from where its bounding sphere may be seen.
+  int CountAlone(const CameraView& view, const mjData& data) {
+    DrawSegments();
+    const mjvGeom& g = scene.geoms[0];
+    const bool named = !view.name.empty();
+    const Pose X_WC = named ? CameraPose(model, data, view.name) : view.X_WC;
+    const double fovy = named ? CameraFovyDeg(model, view.name) : view.fovy_deg;
+    const Eigen::Vector3d p_C = X_WC.inverse() * Eigen::Vector3d(g.pos[0], g.pos[1], g.pos[2]);
+    const double radius = 1.2 * g.modelrbound;
+    mjrRect box = Viewport();
+    if (g.modelrbound > 0 && p_C.z() > 2 * radius) {
+      const double focal = options.height / (2 * std::tan(fovy * M_PI / 360));
+      // Rows count from the bottom.
+      const double u = options.width / 2.0 + focal * p_C.x() / p_C.z();
+      const double v = options.height / 2.0 - focal * p_C.y() / p_C.z();
+      const double reach = focal * radius / (p_C.z() - radius) + 2;
+      const cv::Rect seen = cv::Rect(cv::Point(cvFloor(u - reach), cvFloor(v - reach)),
+                                     cv::Point(cvCeil(u + reach), cvCeil(v + reach))) &
+                            cv::Rect(0, 0, options.width, options.height);
+      box = {seen.x, seen.y, seen.width, seen.height};
+    }
+    if (box.width <= 0 || box.height <= 0) return 0;
+    mjr_readPixels(rgb.data, nullptr, box, &context);
+    const unsigned char* pixel = rgb.data;
+    int count = 0;
+    for (int i = 0; i < box.width * box.height; ++i, pixel += 3) {
+      count += (pixel[0] | pixel[1] | pixel[2]) != 0;
+    }
+    return count;
+  }
+
   mjrRect Viewport() const { return {0, 0, options.width, options.height}; }
 
   void Draw() { mjr_render(Viewport(), &scene, &context); }
 
-  // Colours as ids of the scene's geoms (24 bits, red lowest), first row on top.
-  cv::Mat DrawIds() {
+  void DrawSegments() {
     scene.flags[mjRND_SEGMENT] = 1;
     scene.flags[mjRND_IDCOLOR] = 1;
     scene.flags[mjRND_SHADOW] = 0;
     scene.flags[mjRND_SKYBOX] = 0;
     Draw();
+  }
+
+  // Colours as ids of the scene's geoms (24 bits, red lowest), first row on top.
+  cv::Mat DrawIds() {
+    DrawSegments();
     mjr_readPixels(rgb.data, nullptr, Viewport(), &context);
     cv::Mat ids(rgb.rows, rgb.cols, CV_32SC1);
     for (int r = 0; r < rgb.rows; ++r) {
@@ -232,7 +267,7 @@ std::vector<CameraRenderer::Visibility> CameraRenderer::CountVisible(
     for (const mjvGeom& g : all) {
       if (g.objtype == mjOBJ_GEOM && g.objid == geoms[i]) scene.geoms[scene.ngeom++] = g;
     }
-    if (scene.ngeom > 0) counts[i].unoccluded = cv::countNonZero(impl_->DrawIds() >= 0);
+    if (scene.ngeom > 0) counts[i].unoccluded = impl_->CountAlone(view, data);
   }
   return counts;
 }
