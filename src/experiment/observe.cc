@@ -141,6 +141,7 @@ Observation ObserveMotion(ObserveStage& stage, const HandMotion& motion, RandomE
   };
   TrackDemonstrationOptions tracking;
   tracking.lead_in = -result.shown.samples.front().t;
+  tracking.tracker.kind = options.tracker;
   if (stage.shows_object()) tracking.object = motion.object;
   if (stage.cap_hue_deg()) tracking.tracker.colour.hue_deg = stage.cap_hue_deg();
   result.tracked = TrackStereo(camera, stage.eyes(), &stage.common_hand(), tracking, engine, draw,

@@ -15,8 +15,9 @@
 namespace springgrasp {
 
 struct ObserveOptions {
-  double fps = 30;              // of the eyes, Hz (the paper's: 23)
-  double noise = 0;             // deviation of the pictures' grey values, 0..255
+  double fps = 30;   // of the eyes, Hz (the paper's: 23)
+  double noise = 0;  // deviation of the pictures' grey values, 0..255
+  TrackerKind tracker = TrackerKind::kOutline;
   bool measure_visible = true;  // count each cap's visible pixels (adds some 40 % of the time)
   std::string overlay;          // video of the tracking (.mp4), if not empty
   std::string frames_folder;    // existing folder for left_0000.png, right_0000.png, if not empty
