@@ -1,0 +1,86 @@
+// A stereo recording made for a test: drawn hand, calibration, in a folder.
+#pragma once
+
+#include <functional>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+#include <string>
+
+#include "base/files.h"
+#include "vision/synthetic_caps.h"
+
+namespace springgrasp {
+
+inline std::string CalibrationMatrix(const std::string& name, int rows, int cols,
+                                     const std::string& data) {
+  return fmt::format("{}: !!opencv-matrix\n   rows: {}\n   cols: {}\n   dt: d\n   data: [ {} ]\n",
+                     name, rows, cols, data);
+}
+
+// As stereo_calib writes it.
+inline std::string IntrinsicsText(const StereoCameras& eyes) {
+  std::string text = "%YAML:1.0\n---\n";
+  for (int v = 0; v < 2; ++v) {
+    const CameraModel& c = eyes.view(v);
+    text += CalibrationMatrix(
+        fmt::format("M{}", v + 1), 3, 3,
+        fmt::format("{}, 0., {}, 0., {}, {}, 0., 0., 1.", c.fx, c.cx, c.fy, c.cy));
+    text += CalibrationMatrix(fmt::format("D{}", v + 1), 1, 8,
+                              fmt::format("{}", fmt::join(c.distortion, ", ")));
+  }
+  return text;
+}
+
+inline std::string ExtrinsicsText(const StereoCameras& eyes) {
+  const Pose X_RL = eyes.right.X_WC.inverse() * eyes.left.X_WC;
+  const Eigen::Matrix3d R_t = X_RL.linear().transpose();  // column-major storage: rows of R
+  const Eigen::Vector3d T = X_RL.translation();
+  return "%YAML:1.0\n---\n" +
+         CalibrationMatrix("R", 3, 3,
+                           fmt::format("{}", fmt::join(R_t.data(), R_t.data() + 9, ", "))) +
+         CalibrationMatrix("T", 3, 1, fmt::format("{}", fmt::join(T.data(), T.data() + 3, ", ")));
+}
+
+// TestEyes for pictures of another size: the same view, scaled.
+inline StereoCameras EyesOfSize(int width, int height) {
+  StereoCameras eyes = TestEyes();
+  const double scale = height / 480.0;
+  for (CameraModel* camera : {&eyes.left, &eyes.right}) {
+    camera->width = width;
+    camera->height = height;
+    camera->fx *= scale;
+    camera->fy *= scale;
+    camera->cx = 0.5 * (width - 1);
+    camera->cy = 0.5 * (height - 1);
+  }
+  return eyes;
+}
+
+// Draws frames of a hand that closes a little, as left_000.png ... and right_000.png ...
+inline void DrawRecording(const StereoCameras& eyes, int frames, const std::string& folder) {
+  for (int i = 0; i < frames; ++i) {
+    const auto hand = MakeDrawnHand({0.06 - 0.002 * i, 0.05, 0.62}, 0.02 * i);
+    cv::imwrite(fmt::format("{}/left_{:03d}.png", folder, i),
+                DrawCapsules(eyes.left, hand.capsules));
+    cv::imwrite(fmt::format("{}/right_{:03d}.png", folder, i),
+                DrawCapsules(eyes.right, hand.capsules));
+  }
+}
+
+// Truth of DrawRecording at 30 Hz, in the left camera's frame.
+inline std::string TruthText(int frames) {
+  std::string text = "t";
+  for (const std::string_view finger : kFingerNames) {
+    for (const char axis : {'x', 'y', 'z'}) text += fmt::format(",{}_{}", finger, axis);
+  }
+  text += "\n";
+  for (int i = 0; i < frames; ++i) {
+    text += fmt::format("{}", i / 30.0);
+    const auto hand = MakeDrawnHand({0.06 - 0.002 * i, 0.05, 0.62}, 0.02 * i);
+    for (const auto& p : hand.tips) text += fmt::format(",{},{},{}", p.x(), p.y(), p.z());
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace springgrasp
