@@ -36,6 +36,17 @@ bool IsPictures(const std::string& path) {
   return false;
 }
 
+// Pictures of a pattern without a gap; OpenCV's own count stops at one that it cannot decode.
+// Requires a pattern that OpenCV opened: it takes none but those with a single %d.
+long CountPictures(const std::string& pattern) {
+  constexpr int kLatestFirst = 1000;  // index of the first picture
+  int first = 0;
+  while (first <= kLatestFirst && !fs::exists(cv::format(pattern.c_str(), first))) ++first;
+  int end = first;
+  while (fs::exists(cv::format(pattern.c_str(), end))) ++end;
+  return end - first;
+}
+
 }  // namespace
 
 struct RecordedStereo::Impl {
@@ -71,6 +82,9 @@ struct RecordedStereo::Impl {
         pictures ? "no pictures of that name that OpenCV reads" : "not a video that OpenCV reads");
     const double announced = side.capture.get(cv::CAP_PROP_FRAME_COUNT);
     if (announced > 0 && announced < kMostFrames) side.announced = std::lround(announced);
+    if (path.find('%') != std::string::npos) {
+      side.announced = std::max(side.announced, CountPictures(path));
+    }
     Read(side);
     ThrowUnless(!side.ahead.empty(), "{}: holds no picture that can be read", path);
     ThrowUnless(side.ahead.type() == CV_8UC3, "{}: expected pictures of three colours, 8 bit each",

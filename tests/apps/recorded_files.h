@@ -1,7 +1,9 @@
 // A stereo recording made for a test: drawn hand, calibration, in a folder.
 #pragma once
 
-#include <functional>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 #include <string>
