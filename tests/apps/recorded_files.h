@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/files.h"
+#include "base/fingers.h"
 #include "vision/synthetic_caps.h"
 
 namespace springgrasp {
@@ -58,19 +59,30 @@ inline StereoCameras EyesOfSize(int width, int height) {
   return eyes;
 }
 
-// Draws frames of a hand that closes a little, as left_000.png ... and right_000.png ...
-inline void DrawRecording(const StereoCameras& eyes, int frames, const std::string& folder) {
+// Frame i of a hand that moves and closes a little at each step.
+inline DrawnHand HandOfFrame(int i) {
+  return MakeDrawnHand({0.06 - 0.002 * i, 0.05, 0.62}, 0.02 * i);
+}
+
+// Draws frames of that hand, or one that keeps still, which is faster; as left_000.png ... and
+// right_000.png ...
+inline void DrawRecording(const StereoCameras& eyes, int frames, const std::string& folder,
+                          bool still = false) {
+  cv::Mat left, right;
   for (int i = 0; i < frames; ++i) {
-    const auto hand = MakeDrawnHand({0.06 - 0.002 * i, 0.05, 0.62}, 0.02 * i);
-    cv::imwrite(fmt::format("{}/left_{:03d}.png", folder, i),
-                DrawCapsules(eyes.left, hand.capsules));
-    cv::imwrite(fmt::format("{}/right_{:03d}.png", folder, i),
-                DrawCapsules(eyes.right, hand.capsules));
+    if (i == 0 || !still) {
+      const DrawnHand hand = HandOfFrame(i);
+      left = DrawCapsules(eyes.left, hand.capsules);
+      right = DrawCapsules(eyes.right, hand.capsules);
+    }
+    const std::vector<int> fast = {cv::IMWRITE_PNG_COMPRESSION, 1};
+    cv::imwrite(fmt::format("{}/left_{:03d}.png", folder, i), left, fast);
+    cv::imwrite(fmt::format("{}/right_{:03d}.png", folder, i), right, fast);
   }
 }
 
 // Truth of DrawRecording at 30 Hz, in the left camera's frame.
-inline std::string TruthText(int frames) {
+inline std::string TruthText(int frames, bool still = false) {
   std::string text = "t";
   for (const std::string_view finger : kFingerNames) {
     for (const char axis : {'x', 'y', 'z'}) text += fmt::format(",{}_{}", finger, axis);
@@ -78,8 +90,8 @@ inline std::string TruthText(int frames) {
   text += "\n";
   for (int i = 0; i < frames; ++i) {
     text += fmt::format("{}", i / 30.0);
-    const auto hand = MakeDrawnHand({0.06 - 0.002 * i, 0.05, 0.62}, 0.02 * i);
-    for (const auto& p : hand.tips) text += fmt::format(",{},{},{}", p.x(), p.y(), p.z());
+    for (const auto& p : HandOfFrame(still ? 0 : i).tips)
+      text += fmt::format(",{},{},{}", p.x(), p.y(), p.z());
     text += "\n";
   }
   return text;
