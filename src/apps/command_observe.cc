@@ -1,6 +1,7 @@
 // springgrasp observe: the simulated demonstrator before the robot's eyes, or recorded video.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -19,10 +20,17 @@ struct Options {
   double fps = 0;
   std::optional<double> noise;
   std::optional<std::string> tracker;
+  std::string hand = "right";
   ObserveRecordedOptions recorded;
   bool particles = false;
   bool recorded_only = false;  // an option of recorded video was given
 };
+
+TrackerKind Kind(const Options& options) {
+  const auto found = std::find(kTrackerKinds.begin(), kTrackerKinds.end(),
+                               options.tracker.value_or(std::string(kTrackerKinds[0])));
+  return static_cast<TrackerKind>(found - kTrackerKinds.begin());
+}
 
 int RunRecorded(Options options) {
   ObserveRecordedOptions& recorded = options.recorded;
@@ -34,17 +42,18 @@ int RunRecorded(Options options) {
   for (const auto& [name, value] : needed) {
     ThrowUnless(!value->empty(), "observe on recorded video needs {} too", name);
   }
-  ThrowUnless(options.truth.empty() && options.frames.empty() && !options.noise,
-              "--truth, --save-frames and --noise are for a scene, not for recorded video");
-  ThrowUnless(!options.tracker && !options.particles,
-              "--tracker and --particles are for a scene, not for recorded video");
+  ThrowUnless(options.frames.empty() && !options.noise,
+              "--save-frames and --noise are for a scene, not for recorded video");
+  recorded.particles = options.particles;
   for (const std::string& path : {options.output, options.overlay}) CheckOutputPath(path);
   recorded.output = options.output;
   recorded.overlay = options.overlay;
+  recorded.truth = options.truth;
+  recorded.left_hand = options.hand == "left";
+  recorded.tracker = Kind(options);
   recorded.fps = options.fps;
   recorded.seed = options.seed;
-  ObserveRecorded(recorded);
-  return kDone;
+  return ObserveRecorded(recorded);
 }
 
 void Print(const Observation& observation) {
@@ -73,7 +82,8 @@ int RunObserve(const Options& options) {
               "observe takes either a scene or --left, --right, --intrinsics and --extrinsics");
   if (recorded) return RunRecorded(options);
   ThrowUnless(!options.recorded_only,
-              "--camera-pose and --marker-hue are for recorded video, not for a scene");
+              "--camera-pose, --marker-hue, --cap-* and --hand are for recorded video, not for a "
+              "scene, whose demonstrator has them");
   for (const std::string& path : {options.output, options.overlay, options.truth}) {
     CheckOutputPath(path);
   }
@@ -112,13 +122,26 @@ void AddObserveCommand(CLI::App& app, int& exit_code) {
   command->add_option("--right", recorded.right, "the same of the right camera");
   command->add_option("--intrinsics", recorded.intrinsics, "M1 D1 M2 D2, as stereo_calib writes");
   command->add_option("--extrinsics", recorded.extrinsics, "R T (metres), likewise");
-  CLI::Option* pose = command->add_option("--camera-pose", recorded.camera_pose,
-                                          "\"x y z qw qx qy qz\" of the left camera in the world");
-  CLI::Option* hue = command->add_option("--marker-hue", recorded.marker_hue,
-                                         "of the caps, degrees (0 red, 120 green), or auto");
+  const std::vector<CLI::Option*> recorded_only = {
+      command->add_option("--camera-pose", recorded.camera_pose,
+                          "\"x y z qw qx qy qz\" of the left camera in the world"),
+      command->add_option("--marker-hue", recorded.marker_hue,
+                          "of the caps, degrees (0 red, 120 green, 240 blue), or auto"),
+      command->add_option("--cap-diameter", recorded.cap_diameter, "metres (default: found)")
+          ->check(CLI::Range(0.005, 0.05)),
+      command->add_option("--cap-length", recorded.cap_length, "metres, tip's end to open end")
+          ->check(CLI::Range(0.005, 0.1)),
+      command
+          ->add_option("--cap-centre", recorded.cap_centre,
+                       "metres, tip's end to the point that is written (default: the middle)")
+          ->check(CLI::Range(0.001, 0.1)),
+      command->add_option("--hand", options->hand, "that shows its palm: right or left")
+          ->check(CLI::IsMember({"right", "left"}))};
   command->add_option("-o,--output", options->output, "demonstration CSV: what was tracked")
       ->required();
-  command->add_option("--truth", options->truth, "demonstration CSV: what was shown");
+  command->add_option("--truth", options->truth,
+                      "scene: demonstration CSV to write, what was shown; recorded video: CSV to "
+                      "read and compare with");
   command->add_option("--overlay", options->overlay, "video of the tracking (.mp4)");
   command->add_flag("--particles", options->particles, "draw the particles into the overlay");
   command->add_option("--save-frames", options->frames, "folder for the pictures of both eyes");
@@ -127,11 +150,15 @@ void AddObserveCommand(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(5.0, 1000.0));
   command->add_option("--noise", options->noise, "deviation of the grey values, 0 to 255")
       ->check(CLI::Range(0.0, 255.0));
-  command->add_option("--tracker", options->tracker, "outline or paper (default: the scene's)")
+  command
+      ->add_option("--tracker", options->tracker,
+                   "outline, or paper: section III-B and no more (default: the scene's, outline)")
       ->check(CLI::IsMember(std::vector<std::string>(kTrackerKinds.begin(), kTrackerKinds.end())));
   command->add_option("--seed", options->seed, "of the random streams")->capture_default_str();
-  command->callback([options, pose, hue, &exit_code] {
-    options->recorded_only = pose->count() + hue->count() > 0;
+  command->callback([options, recorded_only, &exit_code] {
+    for (const CLI::Option* option : recorded_only) {
+      options->recorded_only = options->recorded_only || option->count() > 0;
+    }
     exit_code = RunObserve(*options);
   });
 }

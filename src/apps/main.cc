@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "apps/command.h"
 #include "experiment/store.h"
@@ -28,7 +30,9 @@ std::string UnknownCommand(const CLI::App& app, int argc, char** argv) {
   return fmt::format("there is no command '{}'; expected one of {}", argv[1], names);
 }
 
-int Report(const char* message, int code) {
+// One line, whatever a file put into the message.
+int Report(std::string message, int code) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
   fmt::print(stderr, "springgrasp: {}\n", message);
   return code;
 }
@@ -52,7 +56,7 @@ int Main(int argc, char** argv) {
   AddInspectCommand(app, exit_code);
   AddModelCommand(app, exit_code);
   const std::string unknown = UnknownCommand(app, argc, argv);
-  if (!unknown.empty()) return Report(unknown.c_str(), kBadInput);
+  if (!unknown.empty()) return Report(unknown, kBadInput);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

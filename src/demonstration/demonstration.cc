@@ -113,7 +113,9 @@ void ParseComment(std::string_view line, const std::string& where, Demonstration
     const std::vector<double> up = ParseNumbers(value, 3, "up", where);
     const Eigen::Vector3d direction(up[0], up[1], up[2]);
     ThrowUnless(direction.norm() > 1e-9, "{}: up: '{}' has no direction", where, value);
-    demonstration.up = direction.normalized();
+    // What is unit already stays as it is, so that a file written again is the same file.
+    const bool unit = std::abs(direction.norm() - 1) < 1e-12;
+    demonstration.up = unit ? direction : Eigen::Vector3d(direction.normalized());
     up_given = true;
   } else if (colon != std::string::npos && key == "object") {
     demonstration.object = ParseObject(value, where);

@@ -1,6 +1,6 @@
 #include "vision/camera_model.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <fstream>
 
@@ -123,15 +123,55 @@ TEST_F(CalibrationFileTest, AMissingMatrixIsNamed) {
   }
 }
 
+// What the message says when the calibration is refused; "" when it is not.
+std::string Refusal(const std::string& intrinsics, const std::string& extrinsics, int width = 640,
+                    int height = 480) {
+  try {
+    ParseStereoCalibration({intrinsics, "i.yml"}, {extrinsics, "e.yml"}, width, height);
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
 TEST_F(CalibrationFileTest, BadCalibrationIsRefused) {
-  const std::string good = Write("i.yml", intrinsics_);
-  EXPECT_THROW(ReadStereoCalibration(good, Write("e.yml", rotation_ + shift_), 1920, 1080), Error);
-  EXPECT_THROW(ReadStereoCalibration(good + ".absent", good, 640, 480), Error);
-  const std::string skewed = Matrix("R", 3, 3, "1., 0., 0., 0., 2., 0., 0., 0., 1.");
-  EXPECT_THROW(ReadStereoCalibration(good, Write("e.yml", skewed + shift_), 640, 480), Error);
-  const std::string far = Matrix("T", 3, 1, "-93., 0., 0.");  // millimetres
-  EXPECT_THROW(ReadStereoCalibration(good, Write("e.yml", rotation_ + far), 640, 480), Error);
-  EXPECT_THROW(ReadStereoCalibration(Write("x.yml", "M1: [1, 2\n"), good, 640, 480), Error);
+  using testing::HasSubstr;
+  const std::string good = intrinsics_, sound = rotation_ + shift_;
+  const auto with = [&](const std::string& M1) {
+    return Matrix("M1", 3, 3, M1) + good.substr(good.find("D1"));
+  };
+  EXPECT_EQ(Refusal(good, sound), "");
+  EXPECT_THROW(ReadStereoCalibration("/nowhere/i.yml", "/nowhere/e.yml", 640, 480), Error);
+  EXPECT_THAT(Refusal(with("0, 0, 320, 0, 505, 240, 0, 0, 1"), sound), HasSubstr("singular"));
+  EXPECT_THAT(Refusal(with("500, 0, 320, 0, 505, 240, 0, 0, .Nan"), sound), HasSubstr("finite"));
+  EXPECT_THAT(Refusal(with("500, 0, 320, 0, 505"), sound), HasSubstr("5 numbers"));
+  EXPECT_THAT(Refusal("M1: [1, 2\n", sound), HasSubstr("no matrix"));
+  EXPECT_THAT(Refusal("", sound), HasSubstr("'M1' is missing"));
+  EXPECT_THAT(Refusal(good + good, sound), HasSubstr("twice"));
+  EXPECT_THAT(Refusal(good, Matrix("R", 3, 3, "1, 0, 0, 0, 2, 0, 0, 0, 1") + shift_),
+              HasSubstr("not a rotation"));
+  EXPECT_THAT(Refusal(good, Matrix("R", 3, 3, "1, 0, 0, 0, 1, 0, 0, 0, -1") + shift_),
+              HasSubstr("not a rotation"));
+  EXPECT_THAT(Refusal(good, rotation_ + Matrix("T", 3, 1, "0, 0, 0")), HasSubstr("baseline"));
+  // Millimetres.
+  EXPECT_THAT(Refusal(good, rotation_ + Matrix("T", 3, 1, "-93, 0, 0")), HasSubstr("baseline"));
+}
+
+TEST_F(CalibrationFileTest, AnotherPictureSizeIsNoticed) {
+  for (const auto& [width, height] :
+       {std::pair(320, 240), {1280, 720}, {1280, 960}, {1920, 1080}}) {
+    EXPECT_NE(Refusal(intrinsics_, rotation_ + shift_, width, height), "") << width;
+  }
+  // A size that is told counts, however near the centre is.
+  const std::string told = "image_width: 700\nimage_height: 480\n" + intrinsics_;
+  EXPECT_THAT(Refusal(told, rotation_ + shift_), testing::HasSubstr("image_width"));
+}
+
+// Millions of rows cost nothing: they are refused before anything is made of them.
+TEST_F(CalibrationFileTest, DimensionsAreBounded) {
+  const std::string rest = intrinsics_.substr(intrinsics_.find("D1"));
+  EXPECT_NE(Refusal(Matrix("M1", 2000000000, 2000000000, "1") + rest, rotation_ + shift_), "");
+  EXPECT_NE(Refusal(std::string(std::size_t{2} << 20, ' '), rotation_ + shift_), "");
 }
 
 }  // namespace

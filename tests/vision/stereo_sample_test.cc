@@ -31,6 +31,7 @@ std::vector<std::vector<Eigen::Vector3d>> ReadTruth() {
 }
 
 struct Result {
+  std::string csv;
   double median = 0, p95 = 0, coverage = 0;
   int swaps = 0;
 };
@@ -55,6 +56,7 @@ Result Track(const CapShape& cap) {
   EXPECT_EQ(demonstration.samples.size(), truth.size());
   std::vector<double> errors;
   Result result;
+  result.csv = FormatDemonstration(demonstration);
   for (std::size_t i = 0; i < demonstration.samples.size(); ++i) {
     for (int f = 0; f < kNumFingers; ++f) {
       const auto& p = demonstration.samples[i].p_WF[f];
@@ -96,6 +98,11 @@ TEST_F(StereoSampleTest, IsTrackedBetterWithTheirSizeGiven) {
   EXPECT_LT(result.p95, 0.012);
   EXPECT_EQ(result.swaps, 0);
   EXPECT_GT(result.coverage, 0.97);
+}
+
+TEST_F(StereoSampleTest, SameFramesAndSeedGiveTheSameBytes) {
+  const CapShape cap{0.009, 0.025, 0.010};
+  EXPECT_EQ(Track(cap).csv, Track(cap).csv);
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ inline cv::Mat DrawCapsules(const CameraModel& camera, const std::vector<DrawnCa
           double nearest = 1e9;
           Eigen::Vector3d seen = colour;
           for (const DrawnCapsule& c : capsules) {
-            Eigen::Vector3d normal;
+            Eigen::Vector3d normal = Eigen::Vector3d::Zero();
             const auto s = HitCapsule(c, o, d, normal);
             if (!s || *s >= nearest) continue;
             nearest = *s;
