@@ -133,7 +133,7 @@ void AddObserveCommand(CLI::App& app, int& exit_code) {
           ->check(CLI::Range(0.005, 0.1)),
       command
           ->add_option("--cap-centre", recorded.cap_centre,
-                       "metres, tip's end to the point that is written (default: the middle)")
+                       "metres, tip's end to the point that is written (default: the radius)")
           ->check(CLI::Range(0.001, 0.1)),
       command->add_option("--hand", options->hand, "that shows its palm: right or left")
           ->check(CLI::IsMember({"right", "left"}))};

@@ -31,7 +31,8 @@ std::optional<double> MarkerHue(const std::string& text) {
 }
 
 CapShape Cap(const ObserveRecordedOptions& options) {
-  CapShape cap{0.5 * options.cap_diameter, options.cap_length, options.cap_centre};
+  // A thimble's end is the pad's sphere; its other end goes on along the finger.
+  CapShape cap{0.5 * options.cap_diameter, options.cap_length, options.cap_centre, true};
   if (options.cap_length == 0 && options.cap_centre == 0) return cap;
   ThrowUnless(cap.radius > 0, "--cap-length and --cap-centre need --cap-diameter too");
   ThrowUnless(options.cap_length == 0 || options.cap_length >= options.cap_diameter,

@@ -9,16 +9,10 @@
 #include "base/error.h"
 #include "experiment/observe.h"
 #include "experiment/table.h"
+#include "experiment/tracking_errors.h"
 
 namespace springgrasp {
 namespace {
-
-double Quantile(std::vector<double> values, double fraction) {
-  if (values.empty()) return 0;
-  const auto rank = static_cast<std::ptrdiff_t>(fraction * double(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
-}
 
 // Column of `name` among the further ones, -1 if absent.
 int FurtherColumn(const Demonstration& demonstration, const std::string& name) {
@@ -79,7 +73,7 @@ void PrintErrors(const Demonstration& tracked, const Pose& X_WL, const RecordedT
   for (std::size_t i = 0; i < seen.samples.size(); ++i) {
     for (int f = 0; f < kNumFingers; ++f) {
       const auto& p = seen.samples[i].p_WF[f];
-      const bool counts = visible.empty() || visible[i][f] >= ObservationErrors::kVisible;
+      const bool counts = visible.empty() || visible[i][f] >= kVisible;
       if (p && counts) all.push_back((*p - *shown.samples[i].p_WF[f]).norm());
     }
   }

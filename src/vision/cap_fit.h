@@ -18,9 +18,12 @@ namespace springgrasp {
 struct CapShape {
   double radius = 0;     // m; 0: found in the first frames
   double length = 0;     // m, end to end (2 radius: a sphere); 0: 2.5 radius, a thimble's
-  double to_centre = 0;  // m, from the tip's end to the point that is tracked; 0: the middle
+  double to_centre = 0;  // m, from the tip's end to the point that is tracked; 0: as the next says
+  bool to_sphere = false;  // true: centre of the sphere at the tip's end; false: the middle
   double full_length() const { return length > 0 ? std::max(length, 2 * radius) : 2.5 * radius; }
-  double centre_from_tip() const { return to_centre > 0 ? to_centre : 0.5 * full_length(); }
+  double centre_from_tip() const {
+    return to_centre > 0 ? to_centre : to_sphere ? radius : 0.5 * full_length();
+  }
   // Ends of the segment along the axis, from the tracked point: behind it and before it, m.
   double back() const { return centre_from_tip() - full_length() + radius; }
   double front() const { return centre_from_tip() - radius; }
