@@ -24,7 +24,7 @@ constexpr const char* kTracking =
     "    scene: scene.yaml\n"
     "    grasp: pinch\n"
     "    until: observe\n"
-    "    set: {demonstrator.fps: 15}\n"
+    "    set: {demonstrator.fps: 10}\n"
     "    variations: {demonstrator.distance: [0.55, 0.65]}\n"
     "record: {trajectories: all}\n";
 
@@ -70,8 +70,8 @@ TEST(ObserveTrialTest, WhatIsNotFoundIsUntracked) {
   spec.until = "observe";
   spec.scene = ReadScene(folder / "scene.yaml");
   spec.scene.demonstrator.fps = 5;
-  spec.scene.eyes.brightness_drift = 0;
-  spec.scene.eyes.noise = 250;  // nothing left to see
+  spec.scene.demonstrator.X_WO =
+      MakePose({0, -3, 1}, Eigen::Quaterniond::Identity());  // behind the robot
   const TrialResult result = RunTrial(spec, {});
   EXPECT_EQ(result.outcome, Outcome::kUntracked);
   EXPECT_THAT(result.message, HasSubstr("no five fingertip markers"));
