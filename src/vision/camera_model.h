@@ -54,10 +54,10 @@ std::optional<TriangulatedPoint> Triangulate(const StereoCameras& cameras,
 double EpipolarDistance(const StereoCameras& cameras, const Eigen::Vector2d& left,
                         const Eigen::Vector2d& right);
 
-// Reads calibration as OpenCV's `stereo_calib` sample writes it (YAML): intrinsics with M1 D1 M2 D2,
-// extrinsics with R T (T in metres, x_right = R x_left + T). `X_WL` is the pose of the left camera.
-// Throws Error naming file and matrix if one is missing, of a wrong size, singular, not finite,
-// not a rotation, or for pictures of another size than width x height.
+// Reads calibration as OpenCV's `stereo_calib` sample writes it (YAML): intrinsics with M1 D1 M2
+// D2, extrinsics with R T (T in metres, x_right = R x_left + T). `X_WL` is the pose of the left
+// camera. Throws Error naming file and matrix if one is missing, of a wrong size, singular, not
+// finite, not a rotation, or for pictures of another size than width x height.
 StereoCameras ReadStereoCalibration(const std::string& intrinsics, const std::string& extrinsics,
                                     int width, int height, const Pose& X_WL = Pose::Identity());
 

@@ -114,9 +114,9 @@ void FingertipTracker::Impl::Search() {
   if (!any()) return;
 
   // Cap pixels that no trusted finger claims.
-  std::array<std::vector<MarkerBlob>, 2> blobs;
+  auto& blobs = memory.blobs;
   for (int v = 0; v < 2; ++v) {
-    cv::Mat rest = cv::Mat::zeros(views[v].likelihood.size(), CV_8UC1);
+    cv::Mat& rest = memory.rest[v];
     views[v].likelihood(views[v].roi).copyTo(rest(views[v].roi));
     double smallest = 1e9;
     for (int f = 0; f < kNumFingers; ++f) {
@@ -134,18 +134,14 @@ void FingertipTracker::Impl::Search() {
         }
       }
     }
-    blobs[v] = SegmentMarkers(rest, 0.5 * options.min_mass * smallest, views[v].roi);
+    SegmentMarkers(rest, 0.5 * options.min_mass * smallest, views[v].roi, memory.scratch, blobs[v]);
     if (blobs[v].size() > 8) blobs[v].resize(8);
   }
 
   // All ways to give the doubtful fingers a pair of blobs, or none; the cheapest.
-  struct Choice {
-    int left, right;
-    Eigen::Vector3d off;  // m, from where the finger should be
-    double cost;
-  };
-  PerFinger<std::vector<Choice>> choices;
+  auto& choices = memory.choices;
   for (int f = 0; f < kNumFingers; ++f) {
+    choices[f].clear();
     if (!doubtful[f]) continue;
     const Eigen::Vector3d expected = fingers[f].p_W + fingers[f].v_W;
     const double reach = options.search_radius * (1 + 0.25 * std::min(12, fingers[f].lost_frames)) +

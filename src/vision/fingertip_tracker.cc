@@ -23,17 +23,33 @@ std::optional<TrackedFrame> FingertipTracker::Impl::Start(const cv::Mat& left,
   MarkerColourOptions gate = options.colour;
   if (!gate.hue_deg) gate.hue_deg = FindMarkerHue(left, gate);
   if (!gate.hue_deg) return std::nullopt;
-  colour = MakeMarkerColour(gate);
+  // Things of a similar colour behind the hand run together with its caps: closer gates part them.
+  struct Closer {
+    double hue, saturation, value;
+  };
+  constexpr std::array<Closer, 6> kCloser = {
+      {{1, 0, 0}, {0.6, 0, 0}, {1, 0, 0.2}, {0.6, 0.2, 0.2}, {0.35, 0.2, 0}, {0.6, 0.2, 0.4}}};
   std::array<std::vector<MarkerBlob>, 2> blobs;
-  for (int v = 0; v < 2; ++v) {
-    View& view = views[v];
-    MapColours(*pictures[v], colour, Whole(v), view.likelihood, view.bins);
-    // A cap of 9 mm radius at 1.5 m, half of it seen.
-    const double radius = cameras.view(v).fx * 0.009 / 1.5;
-    blobs[v] = SegmentMarkers(view.likelihood, std::max(6.0, 1.5 * radius * radius));
+  std::optional<PerFinger<MarkerPair>> chosen;
+  bool as_gated = true;  // by the first gate
+  for (const Closer& closer : kCloser) {
+    MarkerColourOptions tried = gate;
+    tried.hue_tolerance_deg *= closer.hue;
+    tried.min_saturation += closer.saturation;
+    tried.min_value += closer.value;
+    colour = MakeMarkerColour(tried);
+    for (int v = 0; v < 2; ++v) {
+      View& view = views[v];
+      MapColours(*pictures[v], colour, Whole(v), view.likelihood, view.bins);
+      // A cap of 9 mm radius at 1.5 m, half of it seen.
+      const double radius = cameras.view(v).fx * 0.009 / 1.5;
+      blobs[v] = SegmentMarkers(view.likelihood, std::max(6.0, 1.5 * radius * radius));
+    }
+    chosen = ChooseCaps(PairMarkers(cameras, blobs[0], blobs[1], options.max_epipolar_px),
+                        options.cap.radius);
+    if (chosen) break;
+    as_gated = false;
   }
-  const auto pairs = PairMarkers(cameras, blobs[0], blobs[1], options.max_epipolar_px);
-  const auto chosen = ChooseCaps(pairs, options.cap.radius);
   if (!chosen) return std::nullopt;
 
   // Colour model from the chosen caps against the whole of the left picture.
@@ -57,12 +73,19 @@ std::optional<TrackedFrame> FingertipTracker::Impl::Start(const cv::Mat& left,
     caps_left[i] = blob.centre;
     caps_right[i] = blobs[1][(*chosen)[i].right].centre;
   }
+  // A closer gate leaves only the middle of a cap: the size is then taken as usual.
+  constexpr double kUsualRadius = 0.0095;  // m
+  if (!as_gated) {
+    colour = MakeMarkerColour(gate);
+    radius_px = cameras.left.fx * kUsualRadius / DepthOf(0, (*chosen)[0].point.p_WQ);
+  }
   LearnMarkerColour(left, mask, colour);
-  // Some caps may be half hidden, and two that touch look like a larger one.
+  // Some caps may be half hidden, and two that touch look like a larger one. A thimble seen from
+  // somewhere between its side and its tip covers a fifth more than a disc.
   std::sort(radii.begin(), radii.end());
-  // A thimble seen from somewhere between its side and its tip covers a fifth more than a disc.
   if (cap.radius <= 0) {
-    cap.radius = std::max(0.5 * (radii[2] + radii[3]), radius_by_area / std::sqrt(1.2));
+    cap.radius = as_gated ? std::max(0.5 * (radii[2] + radii[3]), radius_by_area / std::sqrt(1.2))
+                          : kUsualRadius;
   }
 
   // The palm: widest place of the skin near the caps, else the middle of the caps' arc.

@@ -51,6 +51,21 @@ class StageClock {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+// A pair of blobs that may be a finger's cap.
+struct Choice {
+  int left, right;
+  Eigen::Vector3d off;  // m, from where the finger should be
+  double cost;
+};
+
+// What a search needs, kept so that no frame allocates.
+struct SearchMemory {
+  std::array<cv::Mat, 2> rest;  // cap pixels that no trusted finger claims
+  std::array<std::vector<MarkerBlob>, 2> blobs;
+  PerFinger<std::vector<Choice>> choices;
+  MarkerScratch scratch;
+};
+
 // A finger's state between the views.
 struct FingerState {
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
@@ -72,6 +87,7 @@ struct FingertipTracker::Impl {
   SkinModel skin;
   bool started = false;
   std::array<tracker_internal::View, 2> views;
+  tracker_internal::SearchMemory memory;
   PerFinger<tracker_internal::FingerState> fingers;
   Eigen::Vector3d p_WPalm = Eigen::Vector3d::Zero();
   std::array<int, 2> turn = {0, 0};
@@ -84,7 +100,10 @@ struct FingertipTracker::Impl {
       const CameraModel& camera = cameras.view(v);
       views[v].likelihood = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
       views[v].bins = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
+      memory.rest[v] = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
+      memory.blobs[v].reserve(512);
     }
+    for (auto& choices : memory.choices) choices.reserve(64);
   }
 
   void CheckSize(const cv::Mat& picture, int v) const {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <tuple>
 
 namespace springgrasp {
 namespace {
@@ -38,12 +39,25 @@ std::optional<double> HandCost(const std::array<const MarkerPair*, kNumFingers>&
 
 std::vector<MarkerBlob> SegmentMarkers(const cv::Mat& likelihood, double min_area,
                                        cv::Rect region) {
-  if (region.empty()) region = {0, 0, likelihood.cols, likelihood.rows};
-  const cv::Mat part = likelihood(region);
-  cv::Mat binary, labels, stats, centroids;
-  cv::threshold(part, binary, 127, 255, cv::THRESH_BINARY);
-  const int count = cv::connectedComponentsWithStats(binary, labels, stats, centroids, 8, CV_32S);
+  MarkerScratch scratch;
   std::vector<MarkerBlob> blobs;
+  SegmentMarkers(likelihood, min_area, region, scratch, blobs);
+  return blobs;
+}
+
+void SegmentMarkers(const cv::Mat& likelihood, double min_area, cv::Rect region,
+                    MarkerScratch& scratch, std::vector<MarkerBlob>& blobs) {
+  if (region.empty()) region = {0, 0, likelihood.cols, likelihood.rows};
+  if (scratch.binary.size() != likelihood.size()) {
+    scratch.binary.create(likelihood.size(), CV_8UC1);
+    scratch.labels.create(likelihood.size(), CV_32SC1);
+  }
+  const cv::Rect corner(0, 0, region.width, region.height);
+  cv::Mat binary = scratch.binary(corner), labels = scratch.labels(corner);
+  cv::Mat &stats = scratch.stats, &centroids = scratch.centroids;
+  cv::threshold(likelihood(region), binary, 127, 255, cv::THRESH_BINARY);
+  const int count = cv::connectedComponentsWithStats(binary, labels, stats, centroids, 8, CV_32S);
+  blobs.clear();
   for (int i = 1; i < count; ++i) {
     MarkerBlob blob;
     blob.area = stats.at<int>(i, cv::CC_STAT_AREA);
@@ -54,9 +68,9 @@ std::vector<MarkerBlob> SegmentMarkers(const cv::Mat& likelihood, double min_are
                 stats.at<int>(i, cv::CC_STAT_HEIGHT)};
     blobs.push_back(blob);
   }
-  std::stable_sort(blobs.begin(), blobs.end(),
-                   [](const MarkerBlob& a, const MarkerBlob& b) { return a.area > b.area; });
-  return blobs;
+  std::sort(blobs.begin(), blobs.end(), [](const MarkerBlob& a, const MarkerBlob& b) {
+    return std::tie(b.area, a.box.y, a.box.x) < std::tie(a.area, b.box.y, b.box.x);
+  });
 }
 
 double InscribedRadius(const cv::Mat& likelihood, const cv::Rect& box) {
@@ -184,8 +198,11 @@ PerFinger<int> OrderAboutPalm(const PerFinger<Eigen::Vector2d>& caps, const Eige
     return turn * std::remainder(PolarAngle(caps[f], palm) - PolarAngle(middle, palm), kTurn);
   };
   PerFinger<int> order = {0, 1, 2, 3, 4};
-  std::stable_sort(order.begin() + kIndex, order.end(),
-                   [&](int a, int b) { return angle(a) < angle(b); });
+  PerFinger<double> angles;
+  for (int f = kIndex; f < kNumFingers; ++f) angles[f] = angle(f);
+  std::sort(order.begin() + kIndex, order.end(), [&](int a, int b) {
+    return angles[a] < angles[b] || (angles[a] == angles[b] && a < b);
+  });
   return order;
 }
 

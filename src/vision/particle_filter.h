@@ -30,8 +30,8 @@ struct ParticleSet {
 
 struct ParticleOptions {
   int count = 120;
-  double common_sigma_px = 4;  // of the whole hand, per frame
-  double finger_sigma_px = 2;  // of one finger within it
+  double common_sigma_px = 8;  // of the whole hand, per frame
+  double finger_sigma_px = 3;  // of one finger within it
   double colour_scale = 0.04;
   double posture_sigma_px = 12;  // change of the offset between two fingers, per frame
 };
