@@ -22,19 +22,19 @@ VISIBLE = 0.3
 GRASPS = ["pinch", "tripod", "power", "lateral"]
 # Bars: fingertip median and 95 %, hand median and 95 % in mm and degrees, swaps in % of frames.
 BARS = {"clean": (1.5, 5, 8, 20, 6, 15, 0), "moderate": (3, 8, 16, 40, 12, 30, 0.5)}
-# Panels of the figure: cases, axis, and the value that the case `clean` or `none` stands for.
+# Panels of the figure: condition and axis.
 SWEEPS = [
-    ("distance", "distance, m", None),
-    ("speed", "peak wrist speed, m/s", None),
-    ("noise", "noise, grey values", 0),
-    ("blur", "exposure at 1 m/s, s", 0),
-    ("lighting", "change of light", 0),
-    ("white_balance", "change of white balance", 0),
-    ("occlusion", "frames hidden (index)", 0),
-    ("clutter", "things in the background", 0),
-    ("drops", "share of frames dropped", 0),
-    ("offset", "right eye late, s", 0),
-    ("calibration", "right camera turned, rad", 0),
+    ("distance", "distance, m"),
+    ("speed", "peak wrist speed, m/s"),
+    ("noise", "noise, grey values"),
+    ("blur", "exposure at 1 m/s, s"),
+    ("lighting", "change of light"),
+    ("white_balance", "change of white balance"),
+    ("occlusion", "frames hidden (index)"),
+    ("clutter", "things in the background"),
+    ("drops", "share of frames dropped"),
+    ("offset", "right eye late, s"),
+    ("calibration", "right camera turned, rad"),
 ]
 
 
@@ -119,7 +119,11 @@ def load(results):
         words = case.split()
         grasp = next(word for word in words if word in GRASPS)
         words.remove(grasp)
-        name = " ".join(word.split(".")[-1] for word in words)
+        # "demonstrator.distance=0.4" -> "distance=0.4"
+        name = " ".join(
+            word.partition("=")[0].split(".")[-1] + "".join(word.partition("=")[1:])
+            for word in words
+        )
         with open(record) as file:
             rows = list(csv.DictReader(file))
         if "clean" in words or "moderate" in words:
@@ -204,7 +208,7 @@ def draw(pools, path):
     first.set_ylabel("visible fingertips, %")
     first.grid(alpha=0.3)
     first.legend(fontsize=7)
-    for axis, (case, label, zero) in zip(axes[1:], shown):
+    for axis, (case, label) in zip(axes[1:], shown):
         points = sweep(pools, case)
         x = [value for value, _ in points]
         numbers = [pool.numbers() for _, pool in points]

@@ -77,7 +77,7 @@ TEST(SimulatedEyesTest, TheTrackersCamerasProjectToWhereTheLensPutsThings) {
   Watched bent(scene);
   const StereoFrame a = straight.eyes->Look(0), b = bent.eyes->Look(0);
   double largest = 0;
-  for (int f = 0; f < kNumFingers; ++f) {
+  for (const int f : {kThumb, kPinkie}) {  // the caps with no other within 20 px
     for (int eye = 0; eye < 2; ++eye) {
       const CameraModel& pinhole = straight.stage.eyes().view(eye);
       const CameraModel& lens = bent.stage.eyes().view(eye);
