@@ -86,6 +86,8 @@ std::optional<TrackedFrame> FingertipTracker::Impl::Start(const cv::Mat& left,
   if (cap.radius <= 0) {
     cap.radius = as_gated ? std::max(0.5 * (radii[2] + radii[3]), radius_by_area / std::sqrt(1.2))
                           : kUsualRadius;
+    // What looks small is more likely half hidden than small.
+    cap.radius += 0.6 * std::max(0.0, kUsualRadius - cap.radius);
   }
 
   // The palm: widest place of the skin near the caps, else the middle of the caps' arc.
