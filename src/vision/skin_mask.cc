@@ -156,19 +156,35 @@ std::optional<Eigen::Vector2d> PalmCentre(const HandMask& hand,
   for (const auto& cap : cap_px) middle += cap / static_cast<double>(cap_px.size());
   cv::Mat distance;
   cv::distanceTransform(hand.mask, distance, cv::DIST_L2, 3);
-  std::optional<Eigen::Vector2d> best;
-  double widest = 1.3 * cap_radius_px / hand.step;
-  for (int i = 0; i < distance.rows; ++i) {
-    const float* row = distance.ptr<float>(i);
-    for (int j = 0; j < distance.cols; ++j) {
-      if (row[j] <= widest) continue;
-      const Eigen::Vector2d pixel = hand.ToPixel({static_cast<double>(j), static_cast<double>(i)});
-      if ((pixel - middle).norm() > reach_px) continue;
-      widest = row[j];
-      best = pixel;
+  // The caps of an open hand are about equally far from its palm; other things of skin's colour may
+  // be wider, but they lie beside the hand. A closed hand has no such place: then the widest of
+  // all.
+  const auto among_caps = [&](const Eigen::Vector2d& pixel) {
+    double nearest = 1e9, farthest = 0;
+    for (const auto& cap : cap_px) {
+      const double d = (pixel - cap).norm();
+      nearest = std::min(nearest, d);
+      farthest = std::max(farthest, d);
     }
+    return nearest > 0.45 * farthest && nearest > 3.5 * cap_radius_px;
+  };
+  for (const bool open : {true, false}) {
+    std::optional<Eigen::Vector2d> best;
+    double widest = 1.3 * cap_radius_px / hand.step;
+    for (int i = 0; i < distance.rows; ++i) {
+      const float* row = distance.ptr<float>(i);
+      for (int j = 0; j < distance.cols; ++j) {
+        if (row[j] <= widest) continue;
+        const Eigen::Vector2d pixel =
+            hand.ToPixel({static_cast<double>(j), static_cast<double>(i)});
+        if ((pixel - middle).norm() > reach_px || (open && !among_caps(pixel))) continue;
+        widest = row[j];
+        best = pixel;
+      }
+    }
+    if (best) return best;
   }
-  return best;
+  return std::nullopt;
 }
 
 }  // namespace springgrasp
