@@ -42,6 +42,13 @@ def number(text):
     return float(text) if text else np.nan
 
 
+def words_of(word, case):
+    """"demonstrator.distance=0.4" -> "0.4" of the case distance, "distance 0.4" of another."""
+    key, given, value = word.partition("=")
+    key = key.split(".")[-1]
+    return (value if key == case else f"{key} {value}") if given else word
+
+
 class Pool:
     """All frames of one condition."""
 
@@ -119,11 +126,7 @@ def load(results):
         words = case.split()
         grasp = next(word for word in words if word in GRASPS)
         words.remove(grasp)
-        # "demonstrator.distance=0.4" -> "distance=0.4"
-        name = " ".join(
-            word.partition("=")[0].split(".")[-1] + "".join(word.partition("=")[1:])
-            for word in words
-        )
+        name = " ".join(words_of(word, words[0]) for word in words)
         with open(record) as file:
             rows = list(csv.DictReader(file))
         if "clean" in words or "moderate" in words:
@@ -175,8 +178,8 @@ def sweep(pools, case):
     points = []
     for name, pool in pools.items():
         words = name.split()
-        if words[0] == case and len(words) == 2 and "=" in words[1]:
-            points.append((float(words[1].split("=")[1]), pool))
+        if words[0] == case and len(words) > 1:
+            points.append((float(words[-1]), pool))
     return sorted(points, key=lambda point: point[0])
 
 
@@ -214,10 +217,11 @@ def draw(pools, path):
         numbers = [pool.numbers() for _, pool in points]
         axis.plot(x, [n["median"] for n in numbers], "o-", color="#1f5fbf", label="median")
         axis.plot(x, [n["p95"] for n in numbers], "s--", color="#c0392b", label="95 %")
+        axis.plot(x, [n["hand_mm"] for n in numbers], "^:", color="#777777", label="H, median")
         axis.set_yscale("log")
         axis.set_ylim(0.3, 100)
         axis.set_xlabel(label)
-        axis.set_ylabel("fingertip error, mm")
+        axis.set_ylabel("error, mm")
         axis.grid(alpha=0.3)
         other = axis.twinx()
         other.bar(x, [100 - n["coverage"] for n in numbers], color="#888888", alpha=0.35,

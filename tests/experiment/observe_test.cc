@@ -61,6 +61,30 @@ TEST_P(PlacementTest, TheWholePathIsBeforeBothEyes) {
   }
 }
 
+TEST(PrepareDemonstrationTest, SpeedAndDistanceAreAsTheSceneSays) {
+  Scene scene = SceneOf("pinch", "sphere:0.04");
+  scene.demonstrator.distance = 0.9;
+  const ObserveStage stage(scene, std::nullopt);
+  RandomEngine engine = MakeStream(1, 0, "observation"), again = engine;
+  const HandMotion usual = PrepareDemonstration(scene, stage, engine);
+  scene.demonstrator.speed = 1.5;
+  const HandMotion fast = PrepareDemonstration(scene, stage, again);
+  EXPECT_EQ(engine, again);
+  EXPECT_EQ(usual.samples.back().X_WH.matrix(), fast.samples.back().X_WH.matrix()) << "same place";
+  double peak = 0, near = 9, far = 0;
+  const Pose X_EW = stage.eyes().left.X_WC.inverse();
+  for (std::size_t i = 1; i < fast.samples.size(); ++i) {
+    const HandMotionSample &a = fast.samples[i - 1], &b = fast.samples[i];
+    if (a.t < 0) continue;
+    peak = std::max(peak, (b.X_WH.translation() - a.X_WH.translation()).norm() / (b.t - a.t));
+    near = std::min(near, (X_EW * b.X_WH.translation()).z());
+    far = std::max(far, (X_EW * b.X_WH.translation()).z());
+  }
+  EXPECT_NEAR(peak, 1.5, 0.03);
+  EXPECT_GT(near, 0.75);
+  EXPECT_LT(far, 1.05);
+}
+
 TEST(ObserveTest, APinchIsTrackedFromThePicturesAlone) {
   const Scene scene = SceneOf("pinch", "sphere:0.04");
   ObserveStage stage(scene, ShownShape(scene));

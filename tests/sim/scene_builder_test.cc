@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "sim/describe_model.h"
+#include "sim/display_furniture.h"
 #include "sim/model_index.h"
 #include "sim/sim_fixture.h"
 #include "sim/simulation.h"
@@ -261,6 +262,26 @@ TEST(SceneBuilderTest, OnlyActiveSubsystemsMoveAndTheRestKeepsItsInertia) {
   };
   // The joints' own armatures below the torso are no part of it.
   EXPECT_NEAR(inertia(*torso, *d), inertia(*whole, *all), 1e-6);
+}
+
+TEST(SceneBuilderTest, PlatesAndClutterComeWithTheDemonstratorWhereTheSceneAsks) {
+  Scene scene;
+  BuildOptions options;
+  options.with_demonstrator = true;
+  const int plain = BuildModel(scene, options)->nbody;
+  scene.demonstrator.clutter = 9;
+  scene.demonstrator.occlusion.fingers = {1, 2};
+  const ModelPtr m = BuildModel(scene, options);
+  EXPECT_EQ(m->nbody, plain + 9 + 2);
+  for (const std::string& name : {OccluderName(1), OccluderName(2), ClutterName(8)}) {
+    const int body = IdOf(*m, mjOBJ_BODY, name);
+    EXPECT_GE(m->body_mocapid[body], 0) << name;
+    EXPECT_LT(m->body_pos[3 * body + 2], -1) << "out of sight until it is placed";
+    for (int g = m->body_geomadr[body]; g < m->body_geomadr[body] + m->body_geomnum[body]; ++g) {
+      EXPECT_EQ(m->geom_contype[g] + m->geom_conaffinity[g], 0);
+    }
+  }
+  EXPECT_LT(FindId(*BuildModel(scene), mjOBJ_BODY, ClutterName(0)), 0);
 }
 
 }  // namespace
