@@ -9,9 +9,12 @@ namespace {
 
 using testing::HasSubstr;
 
+// The drawn caps and their truth, which is the middle.
+const std::string kCaps =
+    "--truth truth.csv --cap-diameter 0.018 --cap-length 0.025 --cap-centre 0.0125";
+
 TEST_F(ObserveRecordedTest, PicturesAreTrackedAndComparedWithTheirTruth) {
-  const ProgramResult result =
-      Observe("--truth truth.csv --cap-diameter 0.018 --cap-length 0.025 --overlay new/o.mp4");
+  const ProgramResult result = Observe(kCaps + " --overlay new/o.mp4");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");
   const Errors errors = ErrorsIn(result.out);
@@ -58,13 +61,12 @@ TEST_F(ObserveRecordedTest, ALensDistortionIsUndone) {
   eyes.left.distortion = {-0.25, 0.08, 0.001, -0.002, 0, 0, 0, 0};
   eyes.right.distortion = {-0.22, 0.06, -0.001, 0.001, 0, 0, 0, 0};
   Record(eyes);
-  const std::string caps = "--truth truth.csv --cap-diameter 0.018 --cap-length 0.025 ";
-  const Errors known = ErrorsIn(Observe(caps).out);
+  const Errors known = ErrorsIn(Observe(kCaps).out);
   EXPECT_LT(known.median, 3);
   EXPECT_LT(known.p95, 7);
   // It matters: with calibration files that know nothing of it the errors are larger.
   WriteCalibration(IntrinsicsText(TestEyes()), ExtrinsicsText(eyes));
-  EXPECT_GT(ErrorsIn(Observe(caps).out).median, 2 * known.median);
+  EXPECT_GT(ErrorsIn(Observe(kCaps).out).median, 2 * known.median);
 }
 
 class PictureSizeTest : public ObserveRecordedTest,
@@ -75,7 +77,7 @@ class PictureSizeTest : public ObserveRecordedTest,
 };
 
 TEST_P(PictureSizeTest, IsTracked) {
-  const ProgramResult result = Observe("--truth truth.csv --cap-diameter 0.018 --cap-length 0.025");
+  const ProgramResult result = Observe(kCaps);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_LT(ErrorsIn(result.out).median, GetParam().second < 480 ? 5 : 3) << result.out;
   EXPECT_EQ(ErrorsIn(result.out).swaps, 0) << result.out;

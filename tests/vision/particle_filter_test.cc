@@ -44,7 +44,8 @@ TEST(ParticleFilterTest, TheEstimateFollowsCapsThatMoveTogether) {
     estimate = next;
     ResampleParticles(engine, particles);
   }
-  for (int f = 0; f < kNumFingers; ++f) EXPECT_LT((estimate[f] - truth[f]).norm(), 4) << f;
+  // Well within the window of the mean shift that follows, 1.3 radii.
+  for (int f = 0; f < kNumFingers; ++f) EXPECT_LT((estimate[f] - truth[f]).norm(), 6) << f;
 }
 
 TEST(ParticleFilterTest, WeightsPreferTheRightPlaceAndTheKnownPosture) {
