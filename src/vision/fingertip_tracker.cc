@@ -16,125 +16,6 @@ Eigen::Vector2d FingertipTracker::Impl::PalmPixel(int v) const {
   return Project(cameras.view(v), p_WPalm).value_or(Eigen::Vector2d(0, 0));
 }
 
-std::optional<TrackedFrame> FingertipTracker::Impl::Start(const cv::Mat& left,
-                                                          const cv::Mat& right) {
-  const std::array<const cv::Mat*, 2> pictures = {&left, &right};
-  for (int v = 0; v < 2; ++v) CheckSize(*pictures[v], v);
-  MarkerColourOptions gate = options.colour;
-  if (!gate.hue_deg) gate.hue_deg = FindMarkerHue(left, gate);
-  if (!gate.hue_deg) return std::nullopt;
-  // Things of a similar colour behind the hand run together with its caps: closer gates part them.
-  struct Closer {
-    double hue, saturation, value;
-  };
-  constexpr std::array<Closer, 6> kCloser = {
-      {{1, 0, 0}, {0.6, 0, 0}, {1, 0, 0.2}, {0.6, 0.2, 0.2}, {0.35, 0.2, 0}, {0.6, 0.2, 0.4}}};
-  std::array<std::vector<MarkerBlob>, 2> blobs;
-  std::optional<PerFinger<MarkerPair>> chosen;
-  bool as_gated = true;  // by the first gate
-  for (const Closer& closer : kCloser) {
-    MarkerColourOptions tried = gate;
-    tried.hue_tolerance_deg *= closer.hue;
-    tried.min_saturation += closer.saturation;
-    tried.min_value += closer.value;
-    colour = MakeMarkerColour(tried);
-    for (int v = 0; v < 2; ++v) {
-      View& view = views[v];
-      MapColours(*pictures[v], colour, Whole(v), view.likelihood, view.bins);
-      // A cap of 9 mm radius at 1.5 m, half of it seen.
-      const double radius = cameras.view(v).fx * 0.009 / 1.5;
-      blobs[v] = SegmentMarkers(view.likelihood, std::max(6.0, 1.5 * radius * radius));
-    }
-    chosen = ChooseCaps(PairMarkers(cameras, blobs[0], blobs[1], options.max_epipolar_px),
-                        options.cap.radius);
-    if (chosen) break;
-    as_gated = false;
-  }
-  if (!chosen) return std::nullopt;
-
-  // Colour model from the chosen caps against the whole of the left picture.
-  cv::Mat mask = cv::Mat::zeros(left.size(), CV_8UC1);
-  double radius_px = 0, radius_by_area = 0;
-  PerFinger<double> radii;
-  std::vector<Eigen::Vector2d> cap_px;
-  PerFinger<Eigen::Vector2d> caps_left, caps_right;
-  for (int i = 0; i < kNumFingers; ++i) {
-    const MarkerBlob& blob = blobs[0][(*chosen)[i].left];
-    views[0].likelihood(blob.box).copyTo(mask(blob.box));
-    radius_by_area += (*chosen)[i].radius / kNumFingers;
-    radii[i] = 0;
-    for (int v = 0; v < 2; ++v) {
-      const cv::Rect& box = blobs[v][v == 0 ? (*chosen)[i].left : (*chosen)[i].right].box;
-      radii[i] = std::max(radii[i], InscribedRadius(views[v].likelihood, box) *
-                                        DepthOf(v, (*chosen)[i].point.p_WQ) / cameras.view(v).fx);
-    }
-    radius_px += std::sqrt(blob.area / std::numbers::pi) / kNumFingers;
-    cap_px.push_back(blob.centre);
-    caps_left[i] = blob.centre;
-    caps_right[i] = blobs[1][(*chosen)[i].right].centre;
-  }
-  // A closer gate leaves only the middle of a cap: the size is then taken as usual.
-  constexpr double kUsualRadius = 0.0095;  // m
-  if (!as_gated) {
-    colour = MakeMarkerColour(gate);
-    radius_px = cameras.left.fx * kUsualRadius / DepthOf(0, (*chosen)[0].point.p_WQ);
-  }
-  LearnMarkerColour(left, mask, colour);
-  // Some caps may be half hidden, and two that touch look like a larger one. A thimble seen from
-  // somewhere between its side and its tip covers a fifth more than a disc.
-  std::sort(radii.begin(), radii.end());
-  if (cap.radius <= 0) {
-    cap.radius = as_gated ? std::max(0.5 * (radii[2] + radii[3]), radius_by_area / std::sqrt(1.2))
-                          : kUsualRadius;
-    // What looks small is more likely half hidden than small.
-    cap.radius += 0.6 * std::max(0.0, kUsualRadius - cap.radius);
-  }
-
-  // The palm: widest place of the skin near the caps, else the middle of the caps' arc.
-  skin = LearnSkin(left, colour, cap_px, radius_px);
-  HandMask hand;
-  SegmentHand(left, skin, colour, cap_px, radius_px, Whole(0), 2, hand);
-  Eigen::Vector2d palm =
-      PalmCentre(hand, cap_px, radius_px, 16 * radius_px).value_or(PalmFromCaps(caps_left));
-  const PerFinger<int> order = LabelFingers(caps_left, palm, options.hand);
-
-  double depth = 0;
-  for (int f = 0; f < kNumFingers; ++f) {
-    const MarkerPair& pair = (*chosen)[order[f]];
-    fingers[f] = FingerState();
-    fingers[f].radius = cap.radius;
-    fingers[f].p_W = pair.point.p_WQ;
-    depth += DepthOf(0, pair.point.p_WQ) / kNumFingers;
-    views[0].region[f] = blobs[0][pair.left].centre;
-    views[1].region[f] = blobs[1][pair.right].centre;
-  }
-  const Eigen::Vector3d ray = PixelRay(cameras.left, palm);
-  p_WPalm =
-      cameras.left.X_WC.translation() + ray * (depth / cameras.left.X_WC.linear().col(2).dot(ray));
-  for (int f = 0; f < kNumFingers; ++f) {
-    fingers[f].axis_W =
-        (fingers[f].p_W - p_WPalm).normalized() + kUsualDepth * cameras.left.X_WC.linear().col(2);
-    fingers[f].axis_W.normalize();
-  }
-  for (int v = 0; v < 2; ++v) {
-    View& view = views[v];
-    MapColours(*pictures[v], colour, Whole(v), view.likelihood, view.bins);
-    view.roi = Whole(v);
-    view.motion.fill(Eigen::Vector2d::Zero());
-    view.active.fill(true);
-    view.particles = MakeParticles(view.region, options.particles.count);
-    turn[v] = FingerTurn(view.region, PalmPixel(v));
-    PerFinger<double> window;
-    for (int f = 0; f < kNumFingers; ++f) window[f] = 1.3 * RadiusPx(v, fingers[f].p_W);
-    const MeanShiftResult modes = MeanShift(view.likelihood, view.region, view.active, window);
-    view.region = modes.centre;
-    view.mass = modes.mass;
-    Judge(v);
-  }
-  started = true;
-  return Measure(pictures);
-}
-
 // Regions at the modes: how much cap there is in each, and of what colour.
 void FingertipTracker::Impl::Judge(int v) {
   View& view = views[v];
@@ -153,7 +34,8 @@ void FingertipTracker::Impl::Judge(int v) {
   }
 }
 
-void FingertipTracker::Impl::TrackView(int v, const cv::Mat& bgr, RandomEngine& engine) {
+// Colours of the part of the picture where the fingers may be.
+void FingertipTracker::Impl::Map(int v, const cv::Mat& bgr) {
   StageClock clock(times);
   View& view = views[v];
   PerFinger<double> radius;
@@ -172,7 +54,13 @@ void FingertipTracker::Impl::TrackView(int v, const cv::Mat& bgr, RandomEngine& 
   // Bins outside are stale: clear the frame of the region that particles might still touch.
   MapColours(bgr, colour, view.roi, view.likelihood, view.bins);
   clock.Lap(0);
+}
 
+void FingertipTracker::Impl::TrackView(int v, RandomEngine& engine) {
+  StageClock clock(times);
+  View& view = views[v];
+  PerFinger<double> radius;
+  for (int f = 0; f < kNumFingers; ++f) radius[f] = RadiusPx(v, fingers[f].p_W);
   const Regions previous = view.region;
   PredictParticles(view.motion, options.particles, engine, view.particles);
   WeightParticles(view.bins, colour.model, previous, view.motion, view.active, radius,
@@ -180,6 +68,13 @@ void FingertipTracker::Impl::TrackView(int v, const cv::Mat& bgr, RandomEngine& 
   Regions estimate = MeanRegions(view.particles);
   ResampleParticles(engine, view.particles);
   clock.Lap(1);
+  // Particles may be led away by larger things of the caps' colour: a region that finds a cap where
+  // it was going to be needs none of them.
+  constexpr double kFound = 0.5;
+  for (int f = 0; f < kNumFingers && options.kind == TrackerKind::kOutline; ++f) {
+    const Eigen::Vector2d predicted = previous[f] + view.motion[f];
+    if (Covered(view, predicted, radius[f]) > kFound) estimate[f] = predicted;
+  }
   // Beside a neighbour the visible parts attract each other's regions: there the estimate is where
   // the point in space should be, moved as the rest of the hand was.
   Eigen::Vector2d common = Eigen::Vector2d::Zero();
@@ -220,10 +115,14 @@ TrackedFrame FingertipTracker::Impl::Update(const cv::Mat& left, const cv::Mat& 
   std::array<PerFinger<bool>, 2> active_before = {views[0].active, views[1].active};
   for (int v = 0; v < 2; ++v) {
     CheckSize(*pictures[v], v);
-    TrackView(v, *pictures[v], engine);
+    Map(v, *pictures[v]);
   }
+  const bool outline = options.kind == TrackerKind::kOutline;
+  if (outline) MoveTogether();
+  for (int v = 0; v < 2; ++v) TrackView(v, engine);
   StageClock clock(times);
   Search();
+  if (outline) Untangle();
   RestoreOrder();
   clock.Lap(3);
   TrackedFrame frame = Measure(pictures);
@@ -273,8 +172,13 @@ FingertipTracker::FingertipTracker(const StereoCameras& cameras, const TrackerOp
 FingertipTracker::~FingertipTracker() = default;
 FingertipTracker::FingertipTracker(FingertipTracker&&) noexcept = default;
 
-std::optional<TrackedFrame> FingertipTracker::Start(const cv::Mat& left, const cv::Mat& right) {
-  return impl_->Start(left, right);
+std::optional<TrackedFrame> FingertipTracker::Start(const cv::Mat& left, const cv::Mat& right,
+                                                    int choice) {
+  return impl_->Start(left, right, choice);
+}
+
+void FingertipTracker::Relabel(const PerFinger<int>& order, const Eigen::Vector3d& p_WPalm) {
+  impl_->Relabel(order, p_WPalm);
 }
 
 TrackedFrame FingertipTracker::Update(const cv::Mat& left, const cv::Mat& right,
@@ -286,8 +190,7 @@ bool FingertipTracker::started() const { return impl_->started; }
 
 void FingertipTracker::SetHint(const HandModel& model, const HandFit& fit) {
   if (!fit.has_orientation || impl_->options.kind == TrackerKind::kPaper) return;
-  // The palm's middle lies half way from the wrist to the knuckles, 4 cm along x.
-  impl_->p_WPalm = fit.X_WH * Eigen::Vector3d(0.045 * fit.scale, 0, 0);
+  impl_->p_WPalm = PalmOf(fit);
   for (int f = 0; f < kNumFingers; ++f) {
     FingerState& state = impl_->fingers[f];
     const Eigen::Vector3d axis_W = FittedAxis(model, fit, f);

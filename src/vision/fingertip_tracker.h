@@ -3,21 +3,28 @@
 // cap_fit.h, which the paper does not have.
 //
 // What the paper leaves open, and the choice here (motion and weights: particle_filter.h):
-//  - first frame: pixels within a gate of hue, saturation and value; where things of that colour run
+//  - first frame: pixels within a gate of hue, saturation and value; where things of that colour
+//  run
 //    together with the caps, closer gates one after the other. Of all pairs of blobs that the
 //    epipolar line allows, the five that look most like one hand;
-//  - labels: by polar angle about the palm (widest place of the skin), from the widest gap on, which
+//  - labels: by polar angle about the palm (widest place of the skin), from the widest gap on,
+//  which
 //    is where the wrist is;
 //  - colour model: hue and saturation of these caps against the rest of the picture; value is left
 //    out, since lamps change it. It is not adapted later: that would follow whatever covers a cap;
 //  - mean shift: all fingers at once, a pixel counts for the nearest region only;
-//  - a region is lost when it holds too few cap pixels or another colour, or when the views disagree
+//  - a region is lost when it holds too few cap pixels or another colour, or when the views
+//  disagree
 //    by more than `max_epipolar_px`. Two regions with no more pixels than one cap: the finger that
 //    should be elsewhere is lost, not both kept;
-//  - search: first from where the finger should be (the hand's common motion, or the fit of the whole
-//    hand), then among unclaimed blobs, all lost fingers at once, by distance, by agreement of their
-//    offsets and by finger order;
-//  - order about the palm: a violation starts a search; labels that both views see exchanged for long
+//  - search: first from where the finger should be (the hand's common motion, or the fit of the
+//  whole
+//    hand), then among unclaimed blobs, all lost fingers at once, by distance, by agreement of
+//    their offsets and by finger order;
+//  - sudden motion of the whole hand (kOutline): the set of regions is first shifted as one;
+//  - labels (kOutline): where other labels explain all fingers' pasts much better, they are taken;
+//  - order about the palm: a violation starts a search; labels that both views see exchanged for
+//  long
 //    are restored, but only of fingers that were lost since (fingers do pass each other).
 #pragma once
 
@@ -90,8 +97,11 @@ class FingertipTracker {
 
   // Segments and labels the caps of the first frame. Nothing (and the tracker not started) if the
   // caps cannot be told: call again with the next frame. Throws Error if a picture has not the
-  // camera's size.
-  std::optional<TrackedFrame> Start(const cv::Mat& left, const cv::Mat& right);
+  // camera's size. With `choice` that many likelier sets of caps are passed over: what else is
+  // known of hands may tell against them.
+  std::optional<TrackedFrame> Start(const cv::Mat& left, const cv::Mat& right, int choice = 0);
+  // After a start: finger f's cap is that of finger order[f]; the palm lies at p_WPalm.
+  void Relabel(const PerFinger<int>& order, const Eigen::Vector3d& p_WPalm);
 
   // The next frame. Requires Start.
   TrackedFrame Update(const cv::Mat& left, const cv::Mat& right, RandomEngine& engine);

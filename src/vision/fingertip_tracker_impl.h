@@ -19,6 +19,7 @@ namespace tracker_internal {
 // One camera's instance of the paper's tracker.
 struct View {
   cv::Mat likelihood, bins;  // whole picture; valid in `roi`
+  cv::Mat sums;              // integral of the likelihood over `roi`
   cv::Rect roi;
   ParticleSet particles;
   Regions region;  // mode of each finger, px
@@ -56,6 +57,14 @@ struct Choice {
   int left, right;
   Eigen::Vector3d off;  // m, from where the finger should be
   double cost;
+};
+
+// Five pairs of blobs that may be the caps of a hand.
+struct StartingCaps {
+  std::array<std::vector<MarkerBlob>, 2> blobs;
+  PerFinger<MarkerPair> chosen;
+  bool as_gated = true;      // by the widest gate
+  MarkerColourOptions gate;  // the widest one
 };
 
 // What a search needs, kept so that no frame allocates.
@@ -100,6 +109,7 @@ struct FingertipTracker::Impl {
       const CameraModel& camera = cameras.view(v);
       views[v].likelihood = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
       views[v].bins = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
+      views[v].sums = cv::Mat::zeros(camera.height + 1, camera.width + 1, CV_32SC1);
       memory.rest[v] = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
       memory.blobs[v].reserve(512);
     }
@@ -140,9 +150,13 @@ struct FingertipTracker::Impl {
     return shape;
   }
 
-  std::optional<TrackedFrame> Start(const cv::Mat& left, const cv::Mat& right);
+  std::optional<TrackedFrame> Start(const cv::Mat& left, const cv::Mat& right, int choice);
+  std::optional<tracker_internal::StartingCaps> FindCaps(
+      const std::array<const cv::Mat*, 2>& pictures, int choice);
+  void Relabel(const PerFinger<int>& order, const Eigen::Vector3d& palm);
   TrackedFrame Update(const cv::Mat& left, const cv::Mat& right, RandomEngine& engine);
-  void TrackView(int v, const cv::Mat& bgr, RandomEngine& engine);
+  void Map(int v, const cv::Mat& bgr);
+  void TrackView(int v, RandomEngine& engine);
   void Judge(int v);
   void Settle(int v);
   void Search();
@@ -151,6 +165,11 @@ struct FingertipTracker::Impl {
   void DropCollisions();
   void DropShared(TrackedFrame& frame);
   void RestoreOrder();
+  void Permute(const PerFinger<int>& order, bool with_past = true);
+  void Untangle();
+  void MoveTogether();
+  static double Covered(const tracker_internal::View& view, const Eigen::Vector2d& at,
+                        double radius);
   void Label(const PerFinger<Eigen::Vector3d>& p_WCaps, const PerFinger<int>& order);
   TrackedFrame Measure(const std::array<const cv::Mat*, 2>& pictures);
   Eigen::Vector2d PalmPixel(int v) const;

@@ -88,6 +88,10 @@ Eigen::Vector3d FittedAxis(const HandModel& model, const HandFit& fit, int finge
          (X_HF.linear() * frame.X_BF.linear().transpose() * frame.X_BF.translation().normalized());
 }
 
+Eigen::Vector3d PalmOf(const HandFit& fit) {
+  return fit.X_WH * Eigen::Vector3d(0.045 * fit.scale, 0, 0);
+}
+
 std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras& cameras,
                                     const HandObservation& observation,
                                     const HandPoseOptions& options) {

@@ -77,6 +77,9 @@ HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
 Eigen::Vector3d FittedTip(const HandModel& model, const HandFit& fit, int finger);
 Eigen::Vector3d FittedAxis(const HandModel& model, const HandFit& fit, int finger);
 
+// The palm's middle in W: half way from the wrist to the knuckles.
+Eigen::Vector3d PalmOf(const HandFit& fit);
+
 // One instant of the hand's track.
 struct HandSample {
   double t = 0;                            // s

@@ -105,8 +105,8 @@ std::vector<MarkerPair> PairMarkers(const StereoCameras& cameras,
   return pairs;
 }
 
-std::optional<PerFinger<MarkerPair>> ChooseCaps(const std::vector<MarkerPair>& pairs,
-                                                double cap_radius) {
+std::vector<PerFinger<MarkerPair>> ChooseCaps(const std::vector<MarkerPair>& pairs,
+                                              double cap_radius, int count) {
   // With clutter only the pairs of the likeliest size are tried: at most 4368 sets of 16.
   std::vector<const MarkerPair*> candidates;
   for (const MarkerPair& pair : pairs) {
@@ -118,8 +118,11 @@ std::optional<PerFinger<MarkerPair>> ChooseCaps(const std::vector<MarkerPair>& p
   });
   if (candidates.size() > 16) candidates.resize(16);
   const int n = static_cast<int>(candidates.size());
-  std::optional<PerFinger<MarkerPair>> best;
-  double best_cost = 1e9;
+  struct Set {
+    double cost;
+    PerFinger<int> members;
+  };
+  std::vector<Set> sets;
   for (int a = 0; a < n; ++a)
     for (int b = a + 1; b < n; ++b)
       for (int c = b + 1; c < n; ++c)
@@ -128,11 +131,17 @@ std::optional<PerFinger<MarkerPair>> ChooseCaps(const std::vector<MarkerPair>& p
             const auto cost = HandCost(
                 {candidates[a], candidates[b], candidates[c], candidates[d], candidates[e]},
                 cap_radius);
-            if (!cost || *cost >= best_cost) continue;
-            best_cost = *cost;
-            best = {*candidates[a], *candidates[b], *candidates[c], *candidates[d], *candidates[e]};
+            if (cost) sets.push_back({*cost, {a, b, c, d, e}});
           }
-  return best;
+  std::stable_sort(sets.begin(), sets.end(),
+                   [](const Set& x, const Set& y) { return x.cost < y.cost; });
+  std::vector<PerFinger<MarkerPair>> chosen;
+  for (const Set& set : sets) {
+    if (static_cast<int>(chosen.size()) == count) break;
+    auto& pair_of = chosen.emplace_back();
+    for (int i = 0; i < kNumFingers; ++i) pair_of[i] = *candidates[set.members[i]];
+  }
+  return chosen;
 }
 
 PerFinger<int> LabelFingers(const PerFinger<Eigen::Vector2d>& caps, const Eigen::Vector2d& palm,

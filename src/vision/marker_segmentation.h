@@ -47,11 +47,11 @@ std::vector<MarkerPair> PairMarkers(const StereoCameras& cameras,
                                     const std::vector<MarkerBlob>& left,
                                     const std::vector<MarkerBlob>& right, double max_epipolar_px);
 
-// The five pairs, each blob used once, that look most like the caps of one hand: radii alike (and
-// like `cap_radius` if positive), no two more than 0.26 m or less than 8 mm apart. Nothing if
-// there are no five.
-std::optional<PerFinger<MarkerPair>> ChooseCaps(const std::vector<MarkerPair>& pairs,
-                                                double cap_radius);
+// Sets of five pairs, each blob used once, that look like the caps of one hand, the likeliest first
+// and at most `count`: radii alike (and like `cap_radius` if positive), no two more than 0.26 m or
+// less than 8 mm apart.
+std::vector<PerFinger<MarkerPair>> ChooseCaps(const std::vector<MarkerPair>& pairs,
+                                              double cap_radius, int count = 1);
 
 // Which hand shows its palm. A right hand shows thumb to pinkie counter-clockwise as one sees the
 // picture; kEither decides by the thumb's distance from its neighbour alone.

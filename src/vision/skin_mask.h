@@ -53,7 +53,8 @@ void SegmentHand(const cv::Mat& bgr, const SkinModel& skin, const MarkerColour& 
                  const cv::Rect& region, int step, HandMask& hand);
 
 // Centre of the largest disc inside the mask that is not farther from the middle of the caps than
-// `reach_px`, if possible about equally far from all of them: the palm. Nothing if no disc is wider than a finger (1.3 cap radii).
+// `reach_px`, if possible about equally far from all of them: the palm. Nothing if no disc is wider
+// than a finger (1.3 cap radii).
 std::optional<Eigen::Vector2d> PalmCentre(const HandMask& hand,
                                           const std::vector<Eigen::Vector2d>& cap_px,
                                           double cap_radius_px, double reach_px);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <opencv2/core.hpp>
 #include <optional>
 
 #include "base/error.h"
@@ -10,13 +9,9 @@
 #include "demonstration/demonstration.h"
 #include "vision/fingertip_tracker.h"
 #include "vision/hand_pose.h"
+#include "vision/stereo_frame.h"
 
 namespace springgrasp {
-
-struct StereoFrame {
-  double t = 0;         // s
-  cv::Mat left, right;  // CV_8UC3, BGR
-};
 
 // The next frame, or nothing at the end.
 using FrameSource = std::function<std::optional<StereoFrame>()>;

@@ -163,6 +163,63 @@ TEST(FingertipTrackerTest, NoTwoFingersStayOnOneCap) {
   }
 }
 
+// From rest to `step` m per frame at once, past a green ball behind it if there is one.
+void ExpectRightWhileMoving(const Eigen::Vector3d& step, bool green_ball) {
+  const StereoCameras eyes = TestEyes();
+  FingertipTracker tracker(eyes, Options());
+  RandomEngine engine = MakeStream(1, 0, "observation");
+  Eigen::Vector3d palm(0.12, 0.05, 0.62);
+  for (int k = 0; k <= 9; ++k) {
+    if (k >= 3) palm += step;
+    DrawnHand hand = MakeDrawnHand(palm, 0);
+    if (green_ball) {
+      const Eigen::Vector3d ball(-0.02, -0.02, 0.85);
+      hand.capsules.push_back({ball, ball, 0.06, {25, 150, 25}});
+    }
+    const Frame frame = {DrawCapsules(eyes.left, hand.capsules),
+                         DrawCapsules(eyes.right, hand.capsules), hand.tips};
+    const std::optional<TrackedFrame> seen = Track(tracker, frame, k, engine);
+    ASSERT_TRUE(seen);
+    // Half the way to a neighbour.
+    EXPECT_LT(LargestError(*seen, frame.tips), 0.019) << "frame " << k;
+    if (!green_ball || k == 9) {
+      EXPECT_EQ(seen->num_seen(), kNumFingers) << "frame " << k;
+    }
+  }
+}
+
+TEST(FingertipTrackerTest, AHandThatLeavesAtOnceByMoreThanAFingersWidthKeepsItsLabels) {
+  ExpectRightWhileMoving({-0.03, 0, 0}, false);
+  ExpectRightWhileMoving({0.012, -0.02, 0}, false);
+}
+
+TEST(FingertipTrackerTest, SomethingLargeOfTheCapsColourDoesNotLeadAFingerAway) {
+  ExpectRightWhileMoving({-0.025, 0, 0}, true);
+}
+
+TEST(FingertipTrackerTest, AStartMayPassOverTheLikeliestCaps) {
+  const StereoCameras eyes = TestEyes();
+  FingertipTracker tracker(eyes, Options());
+  DrawnHand hand = MakeDrawnHand({0.05, 0.05, 0.62}, 0);
+  const Eigen::Vector3d sixth(-0.08, 0.02, 0.6);
+  hand.capsules.push_back({sixth, sixth, kCapRadius, {20, 160, 20}});
+  const cv::Mat left = DrawCapsules(eyes.left, hand.capsules);
+  const cv::Mat right = DrawCapsules(eyes.right, hand.capsules);
+  const auto found = [&](int choice) {
+    const auto start = tracker.Start(left, right, choice);
+    int of_hand = 0;
+    for (const Eigen::Vector3d& tip : hand.tips) {
+      for (const TrackedFinger& finger : start->fingers) {
+        of_hand += finger.p_W && (*finger.p_W - tip).norm() < 0.012;
+      }
+    }
+    return of_hand;
+  };
+  EXPECT_EQ(found(0), 5);
+  EXPECT_EQ(found(1), 4);  // with the sixth
+  EXPECT_FALSE(tracker.Start(left, right, 1000));
+}
+
 TEST(FingertipTrackerTest, EqualFramesAndSeedGiveEqualNumbers) {
   const StereoCameras eyes = TestEyes();
   std::vector<Eigen::Vector3d> runs[2];

@@ -90,11 +90,11 @@ TEST(ChooseCapsTest, GreenishClutterIsLeftAside) {
     blobs[v] = SegmentMarkers(likelihood, 20);
     EXPECT_EQ(blobs[v].size(), 7U);
   }
-  const auto caps = ChooseCaps(PairMarkers(eyes, blobs[0], blobs[1], 3), 0);
-  ASSERT_TRUE(caps);
+  const auto sets = ChooseCaps(PairMarkers(eyes, blobs[0], blobs[1], 3), 0, 3);
+  ASSERT_FALSE(sets.empty());
   for (const Eigen::Vector3d& tip : hand.tips) {
     double nearest = 1;
-    for (const MarkerPair& pair : *caps)
+    for (const MarkerPair& pair : sets[0])
       nearest = std::min(nearest, (pair.point.p_WQ - tip).norm());
     EXPECT_LT(nearest, 0.012);
   }

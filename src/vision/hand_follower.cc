@@ -1,0 +1,187 @@
+#include "vision/hand_follower.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "vision/hand_labels.h"
+#include "vision/skin_mask.h"
+
+namespace springgrasp {
+
+HandFollower::HandFollower(const KinematicTree& tree, const StereoCameras& cameras,
+                           const HandPoseOptions& options,
+                           const std::optional<DemonstratedObject>& object)
+    : model_(MakeHandModel(tree)), cameras_(cameras), options_(options) {
+  if (!object) return;
+  object_ =
+      KnownObject{*object, {SeeObject(cameras.left, *object), SeeObject(cameras.right, *object)}};
+}
+
+// Starts tracker and fit with the set of caps and the labels that look most like a hand. Nothing
+// (and the tracker not started) if no set looks like one, as long as `must` is not set.
+std::optional<TrackedFrame> HandFollower::Start(FingertipTracker& tracker, const StereoFrame& frame,
+                                                bool must) {
+  constexpr int kChoices = 12;
+  constexpr double kSure = 80, kNoHand = 160;  // of the fit's cost
+  struct Best {
+    int choice;
+    PerFinger<int> order;
+    HandFit fit;
+  };
+  std::optional<Best> best;
+  for (int choice = 0; choice < kChoices && (!best || best->fit.cost > kSure); ++choice) {
+    const auto tracked = tracker.Start(frame.left, frame.right, choice);
+    if (!tracked) break;
+    HandObservation observation = Observe(frame, *tracked, tracker);
+    for (const PerFinger<int>& order : LikelyLabels(*tracked)) {
+      const HandObservation as_found = observation;
+      for (int f = 0; f < kNumFingers; ++f) {
+        observation.tip_W[f] = as_found.tip_W[order[f]];
+        observation.confidence[f] = as_found.confidence[order[f]];
+      }
+      const auto fit = StartHandFit(model_, cameras_, observation, options_);
+      observation = as_found;
+      if (fit && (!best || fit->cost < best->fit.cost)) best = {choice, order, *fit};
+    }
+  }
+  if (!must && (!best || best->fit.cost > kNoHand)) return std::nullopt;
+  std::optional<TrackedFrame> tracked =
+      tracker.Start(frame.left, frame.right, best ? best->choice : 0);
+  if (!tracked || !best) return tracked;
+  const TrackedFrame as_found = *tracked;
+  for (int f = 0; f < kNumFingers; ++f) tracked->fingers[f] = as_found.fingers[best->order[f]];
+  tracker.Relabel(best->order, PalmOf(best->fit));
+  fit_ = best->fit;
+  fresh_ = true;
+  return tracked;
+}
+
+const HandFit* HandFollower::Follow(const StereoFrame& frame, const TrackedFrame& tracked,
+                                    const FingertipTracker& tracker, bool fit_scale) {
+  const HandObservation observation = Observe(frame, tracked, tracker);
+  if (std::exchange(fresh_, false)) return &*fit_;
+  if (!fit_) {
+    fit_ = StartHandFit(model_, cameras_, observation, options_);
+    return fit_ ? &*fit_ : nullptr;
+  }
+  const Pose before = fit_->X_WH;
+  fit_ = UpdateHandFit(model_, cameras_, observation, *fit_, step_, fit_scale, options_);
+  step_.position = 0.5 * step_.position + 0.5 * (fit_->X_WH.translation() - before.translation());
+  step_.rotation = 0.5 * step_.rotation +
+                   0.5 * LogRotation(Eigen::Quaterniond(
+                             Eigen::Matrix3d(fit_->X_WH.linear() * before.linear().transpose())));
+  if (fit_scale) {
+    CountForearm();
+  } else if (forearm_frames_ > 0) {
+    std::vector<bool> bare;
+    for (const int seen : forearm_seen_) bare.push_back(2 * seen > forearm_frames_);
+    KeepBareForearm(bare, model_);
+    if (sleeve_x_.size() >= 4) {
+      std::nth_element(sleeve_x_.begin(), sleeve_x_.begin() + sleeve_x_.size() / 2,
+                       sleeve_x_.end());
+      model_.sleeve_x = sleeve_x_[sleeve_x_.size() / 2];
+    }
+    forearm_frames_ = 0;
+  }
+  return &*fit_;
+}
+
+HandObservation HandFollower::Observe(const StereoFrame& frame, const TrackedFrame& tracked,
+                                      const FingertipTracker& tracker) {
+  HandObservation observation;
+  if (object_) observation.object = &*object_;
+  for (int f = 0; f < kNumFingers; ++f) {
+    observation.tip_W[f] = tracked.fingers[f].p_W;
+    observation.confidence[f] = tracked.fingers[f].confidence;
+  }
+  for (int v = 0; v < 2; ++v) {
+    if (Segment(v, v == 0 ? frame.left : frame.right, tracked, tracker)) {
+      observation.masks[v] = &masks_[v];
+    }
+  }
+  return observation;
+}
+
+// As the tracker has them, and two ways in which a hand fits the caps best.
+std::vector<PerFinger<int>> HandFollower::LikelyLabels(const TrackedFrame& tracked) const {
+  std::vector<PerFinger<int>> likely = {{0, 1, 2, 3, 4}};
+  PerFinger<Eigen::Vector3d> caps;
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (!tracked.fingers[f].p_W) return likely;
+    caps[f] = *tracked.fingers[f].p_W;
+  }
+  const std::vector<HandLabels> ranked = RankLabels(model_, cameras_, caps);
+  constexpr double kClear = 0.006;  // m
+  for (int i = 0; i < 2; ++i) {
+    if (ranked[i].order != likely[0]) likely.push_back(ranked[i].order);
+    if (i == 0 && ranked[1].rms > ranked[0].rms + kClear) break;
+  }
+  return likely;
+}
+
+bool HandFollower::Segment(int v, const cv::Mat& bgr, const TrackedFrame& tracked,
+                           const FingertipTracker& tracker) {
+  std::vector<Eigen::Vector2d> caps;
+  double radius = 0;
+  const CameraModel& camera = cameras_.view(v);
+  for (const TrackedFinger& finger : tracked.fingers) {
+    if (!finger.pixel[v] || !finger.p_W) continue;
+    caps.push_back(*finger.pixel[v]);
+    const double depth = camera.X_WC.linear().col(2).dot(*finger.p_W - camera.X_WC.translation());
+    radius += camera.fx * tracker.cap().radius / std::max(0.05, depth);
+  }
+  if (caps.empty()) return false;
+  radius /= static_cast<double>(caps.size());
+  // As far as a hand reaches from its tips.
+  double u0 = 1e9, v0 = 1e9, u1 = -1e9, v1 = -1e9;
+  for (const auto& cap : caps) {
+    u0 = std::min(u0, cap.x()), u1 = std::max(u1, cap.x());
+    v0 = std::min(v0, cap.y()), v1 = std::max(v1, cap.y());
+  }
+  const double reach = 17 * radius;
+  const cv::Rect region =
+      cv::Rect(cv::Point(static_cast<int>(u0 - reach), static_cast<int>(v0 - reach)),
+               cv::Point(static_cast<int>(u1 + reach), static_cast<int>(v1 + reach))) &
+      cv::Rect(0, 0, bgr.cols, bgr.rows);
+  if (region.area() < 100) return false;
+  const int step = std::max(1, static_cast<int>(std::lround(options_.mask_step * radius)));
+  SegmentHand(bgr, tracker.skin(), tracker.colour(), caps, radius, region, step, masks_[v]);
+  return true;
+}
+
+// Which balls of the forearm lie on skin, in both pictures.
+void HandFollower::CountForearm() {
+  forearm_seen_.resize(model_.balls.size());
+  ++forearm_frames_;
+  for (std::size_t i = 0; i < model_.balls.size(); ++i) {
+    const HandBall& ball = model_.balls[i];
+    if (!ball.forearm) continue;
+    int views = 0;
+    for (int v = 0; v < 2; ++v) {
+      const auto pixel = Project(cameras_.view(v), fit_->X_WH * (fit_->scale * ball.p_B));
+      views += pixel && OnSkin(masks_[v], *pixel);
+    }
+    forearm_seen_[i] += views == 2;
+  }
+  // Where the skin ends on the way up the forearm, if both pictures show it.
+  constexpr double kStep = 0.002, kMost = 0.11;  // m
+  double sum = 0;
+  for (int v = 0; v < 2; ++v) {
+    double x = 0;
+    std::optional<Eigen::Vector2d> pixel;
+    for (; x > -kMost; x -= kStep) {
+      pixel = Project(cameras_.view(v), fit_->X_WH * Eigen::Vector3d(fit_->scale * x, 0, 0));
+      if (!pixel || !OnSkin(masks_[v], *pixel)) break;
+    }
+    const CameraModel& camera = cameras_.view(v);
+    if (x == 0 || x <= -kMost || !pixel || pixel->x() < 12 || pixel->y() < 12 ||
+        pixel->x() > camera.width - 13 || pixel->y() > camera.height - 13) {
+      return;
+    }
+    sum += x + 0.5 * kStep;
+  }
+  sleeve_x_.push_back(sum / 2);
+}
+
+}  // namespace springgrasp

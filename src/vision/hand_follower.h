@@ -1,0 +1,55 @@
+// The whole hand beside its fingertips: finds out at the start which caps are a hand's and whose,
+// and follows the pose of H from frame to frame.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "demonstration/demonstration.h"
+#include "vision/fingertip_tracker.h"
+#include "vision/hand_pose.h"
+#include "vision/stereo_frame.h"
+
+namespace springgrasp {
+
+// Owns the fit of the last frame and what the lead-in told of the arm.
+class HandFollower {
+ public:
+  // `object`: shown with the hand, may hide it.
+  HandFollower(const KinematicTree& tree, const StereoCameras& cameras,
+               const HandPoseOptions& options, const std::optional<DemonstratedObject>& object);
+
+  // Starts tracker and fit with the set of caps and the labels that look most like a hand. Nothing
+  // if no set does, unless it `must` be one: call again with the next frame.
+  std::optional<TrackedFrame> Start(FingertipTracker& tracker, const StereoFrame& frame, bool must);
+
+  // The fit to a tracked frame; nothing as long as the hand was not found. Of the frame of the
+  // start it is the start's.
+  const HandFit* Follow(const StereoFrame& frame, const TrackedFrame& tracked,
+                        const FingertipTracker& tracker, bool fit_scale);
+
+  const HandModel& model() const { return model_; }
+
+ private:
+  HandObservation Observe(const StereoFrame& frame, const TrackedFrame& tracked,
+                          const FingertipTracker& tracker);
+  bool Segment(int v, const cv::Mat& bgr, const TrackedFrame& tracked,
+               const FingertipTracker& tracker);
+  std::vector<PerFinger<int>> LikelyLabels(const TrackedFrame& tracked) const;
+  void CountForearm();
+
+  HandModel model_;
+  std::vector<int> forearm_seen_;
+  std::vector<double> sleeve_x_;  // m, of the frames of the lead-in in which it was seen
+  int forearm_frames_ = 0;
+  StereoCameras cameras_;
+  HandPoseOptions options_;
+  std::array<HandMask, 2> masks_;
+  std::optional<KnownObject> object_;
+  std::optional<HandFit> fit_;
+  bool fresh_ = false;  // the fit is of the frame at hand
+  HandStep step_;
+};
+
+}  // namespace springgrasp
