@@ -109,6 +109,7 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
   for (int i = 0; i < kNumFingers; ++i) {
     run.p_HC[i] = grasp.offset[i];
     run.n_H[i].setZero();
+    run.opening[i] = grasp.opening[i];
     run.p_HF[i] = grasp.offset[i];
     run.v_HF[i] = grasp.velocity[i] * (grasp.scales.T / T);
     motion.p_OC[i].setZero();
@@ -136,6 +137,7 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
   run.ambient_damping = grasp.ambient_damping;
   run.ratio = grasp.ratio;
   run.max_ratio = grasp.max_ratio;
+  run.hold = grasp.profile == "human";
   run.T = T;
   run.t_switch = grasp.switch_rule == "fitted" ? grasp.t_switch * T : path.t_switch;
   motion.t_switch = run.t_switch + run.gains.delay;

@@ -27,9 +27,13 @@ struct GraspEdge {
 
 // How well the grasp reproduces what it was learned from.
 struct GraspQuality {
-  PerFinger<double> rmse = {};  // reproduced against observed tips in H, m; 0 if not observed
+  PerFinger<double> rmse = {};  // reproduced against smoothed tips in H, m; 0 if not observed
   PerFinger<int> samples = {};  // observed samples that the error is taken over
   double reach_rmse = 0;        // DMP against observed hand, m
+  // Widest aperture between thumb and the other involved tips (m) and its time (of T), observed and
+  // reproduced.
+  double aperture = 0, aperture_time = 0;
+  double aperture_reproduced = 0, aperture_time_reproduced = 0;
   double condition_number = 0;  // of the scaled regression (Eq. 8)
   double planarity = 0;         // RMS distance of the involved tips from the hand plane, m
   double noise = 0;             // estimated deviation of one fingertip coordinate, m
@@ -60,7 +64,7 @@ struct Grasp {
   double delay = 0;                     // of f_cen, fraction of T
   double closing = 1;                   // beta
   double holding = 0.5;                 // f_cen after T / (kc x0)
-  std::string ratio = "reciprocal";     // paper | reciprocal: Eq. 4 while f_cen < 0
+  std::string ratio = "balanced";       // paper | reciprocal | balanced: Eq. 4 while f_cen < 0
   double max_ratio = 16;                // Rmax
   std::string switch_rule = "learned";  // learned: peak speed (Eq. 7); fitted: t_switch below
   double t_switch = 0.5;                // fraction of T
@@ -69,6 +73,11 @@ struct Grasp {
   PerFinger<Eigen::Vector3d> offset;
   PerFinger<Eigen::Vector3d> velocity;
   PerFinger<bool> observed = {};  // false: never seen, posed at rest
+  // Preshape: where f_cen < 0 pushes an involved finger, from its contact in H, m; their lengths
+  // share the force (ratio balanced). Zero: along the outward normal.
+  PerFinger<Eigen::Vector3d> opening = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                        Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                        Eigen::Vector3d::Zero()};
 
   ReachScales scales;  // T, A, x0 of the demonstration
   PoseDmp reach;       // of G in O

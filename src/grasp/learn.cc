@@ -133,6 +133,38 @@ Fingertips ContactNormals(const Grasp& grasp, const Fingertips& p_HC) {
   return normals;
 }
 
+std::size_t WidestInstant(const std::vector<Fingertips>& p_HF, const PerFinger<bool>& involved) {
+  std::size_t widest = 0;
+  for (std::size_t n = 0; n < p_HF.size(); ++n) {
+    if (Aperture(p_HF[n], involved) > Aperture(p_HF[widest], involved)) widest = n;
+  }
+  return widest;
+}
+
+// Where f_cen < 0 must push the involved fingers so that they are at `widest` then, s of T after
+// the start: what the auxiliary springs alone leave of the start is taken off.
+Fingertips Preshape(const FitProblem& fit, double s, const Fingertips& widest) {
+  const double damped = fit.rule.omega_T * fit.rule.zeta;
+  const double split =
+      fit.rule.omega_T * std::sqrt(std::max(1e-6, fit.rule.zeta * fit.rule.zeta - 1));
+  const double left =
+      std::exp(-damped * s) * (std::cosh(split * s) + damped / split * std::sinh(split * s));
+  Fingertips opening;
+  opening.fill(Vector3d::Zero());
+  double mean = 0;
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (!fit.run.involved[i]) continue;
+    opening[i] = widest[i] - fit.run.p_HC[i] - left * (fit.run.p_HF[i] - fit.run.p_HC[i]);
+    mean += opening[i].norm();
+  }
+  // A hand that only closes: the way back to its start.
+  if (mean > 0.01) return opening;
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (fit.run.involved[i]) opening[i] = fit.run.p_HF[i] - fit.run.p_HC[i];
+  }
+  return opening;
+}
+
 // The speed that noise alone leaves in smoothed positions: what a hand at rest seems to move by.
 double SpeedOfNoise(double noise) { return 8 * noise; }  // 1/s: deviation after a 5 Hz low-pass
 
@@ -287,7 +319,10 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
     fit.run.rest_lengths.push_back((relaxed[i] - relaxed[j]).norm());
   }
   fit.run.gains.mass = grasp.mass;
-  fit.run.ratio = grasp.ratio = options.profile == "paper" ? "paper" : "reciprocal";
+  fit.human = options.profile == "human";
+  fit.rule = RuleOf(fit.human);
+  fit.run.ratio = grasp.ratio = fit.human ? "balanced" : "paper";
+  fit.run.hold = fit.human;
   fit.run.max_ratio = grasp.max_ratio;
   fit.run.T = grasp.scales.T;
   fit.run.t_switch = path.t_switch;
@@ -297,11 +332,17 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   fit.dt = track.dt;
   fit.observed = track.observed;
   fit.noise = track.tip_noise;
-  fit.human = options.profile == "human";
   // Eq. 7 cannot see a speed peak that lies outside the recording or at its very edge.
   const double measured = segment.contact - segment.begin;
   const double peak = segment.peak - segment.begin;
-  fit.fit_switch = peak < 0.1 * measured || peak > 0.9 * measured;
+  fit.fit_switch = fit.human || peak < 0.1 * measured || peak > 0.9 * measured;
+  const std::size_t widest = WidestInstant(fit.p_HF, grasp.involved);
+  grasp.quality.aperture = Aperture(fit.p_HF[widest], grasp.involved);
+  grasp.quality.aperture_time = static_cast<double>(widest) * track.dt / grasp.scales.T;
+  if (fit.human) {
+    grasp.opening = Preshape(fit, grasp.quality.aperture_time, fit.p_HF[widest]);
+    fit.run.opening = grasp.opening;
+  }
   const FitResult fitted = FitSprings(fit);
 
   const SpringGains gains = RestoreGains(fitted.gains, grasp.mass, grasp.scales);
@@ -323,6 +364,8 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   grasp.switch_rule = fit.fit_switch ? "fitted" : "learned";
   grasp.t_switch = fitted.t_switch / grasp.scales.T;
   grasp.quality.rmse = fitted.rmse;
+  grasp.quality.aperture_reproduced = fitted.aperture;
+  grasp.quality.aperture_time_reproduced = fitted.aperture_time;
   grasp.quality.samples = fitted.samples;
   grasp.quality.condition_number = fitted.condition_number;
   grasp.quality.noise = track.tip_noise;

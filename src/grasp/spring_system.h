@@ -24,9 +24,9 @@
 
 namespace springgrasp {
 
-enum class SpringDamping { kAxial, kVector, kLiteral };  // D(D.V)/r^2 | V | d/dt of Eq. 2
-enum class ForceRatio { kPaper, kReciprocal };           // rho^2 | 1/rho^2 while f < 0
-enum class OpeningDirection { kSurface, kOutward };      // f < 0 along u | along outward normals
+enum class SpringDamping { kAxial, kVector, kLiteral };    // D(D.V)/r^2 | V | d/dt of Eq. 2
+enum class ForceRatio { kPaper, kReciprocal, kBalanced };  // rho^2 | 1/rho^2 | 1 while f < 0
+enum class OpeningDirection { kSurface, kOutward };        // f < 0 along u | along outward normals
 
 struct Spring {
   int i = 0, j = 1;  // fingers
@@ -43,7 +43,8 @@ struct SpringSystem {
   Eigen::MatrixXd anchors;      // dim x N: contact points, or the object's centre, m
   Eigen::VectorXd rest_radius;  // N: L, 0 at contact points, mean radius for Eq. 6, m
   std::vector<bool> involved;   // N: the paper's c(i)
-  // dim x N outward unit normals at the contacts, for kOutward; where L > 0 the radius is used
+  // dim x N directions in which f < 0 pushes, for kOutward: unit normals at the contacts, or
+  // vectors whose lengths share f among the fingers (kBalanced). Where L > 0 the radius is used
   // instead, where a column is zero u_i.
   Eigen::MatrixXd normals;
   double kc = 1, dc = 0.3;            // auxiliary spring N/m and damper N s/m, of every finger

@@ -34,6 +34,7 @@ struct CentralForce {
   double delay = 0;       // s, of the whole force
   double beta = 1;        // closing gain: multiplies f > 0
   double hold = 0;        // N; after T the force never falls below it
+  bool ramp = false;      // nor, from the (delayed) switch on, below a ramp that rises to it at T
 };
 
 // First sample of largest speed. `v` has a row per sample.

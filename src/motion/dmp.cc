@@ -258,6 +258,9 @@ VectorXd DmpAcceleration(const Dmp& dmp, const DmpState& state, const DmpCouplin
   VectorXd a;
   Integrator(dmp).At(state.s, state.x, state.v, a);
   if (coupling.acceleration) a += coupling.acceleration(state.x, state.v);
+  for (const SphereObstacle& obstacle : coupling.obstacles) {
+    AvoidObstacle(obstacle, state.x, state.v, a);
+  }
   return a;
 }
 
@@ -266,7 +269,7 @@ void StepDmp(const Dmp& dmp, double dt, DmpState& state, const DmpCoupling& coup
   if (coupling.measured && coupling.phase_stopping > 0) {
     h /= 1 + coupling.phase_stopping * (*coupling.measured - state.x).squaredNorm();
   }
-  if (!coupling.acceleration) {
+  if (!coupling.acceleration && coupling.obstacles.empty()) {
     Integrator(dmp).Advance(h, state.s, state.x, state.v);
     return;
   }

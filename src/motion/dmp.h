@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "base/pose.h"
+#include "motion/dmp_obstacle.h"
 #include "motion/motion_samples.h"
 
 namespace springgrasp {
@@ -76,8 +77,10 @@ struct DmpState {
   double s = 1;  // phase
 };
 struct DmpCoupling {
-  // Extra acceleration (an obstacle term, say) at state x, v; none if empty.
+  // Extra acceleration at state x, v; none if empty.
   std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& v)> acceleration;
+  // Kept clear of, one after the other: where two clearances overlap the last one rules.
+  std::vector<SphereObstacle> obstacles;
   // Phase stopping: tau ds/dt = -alpha s / (1 + phase_stopping |measured - x|^2), 1/m^2; and the
   // plan waits with the phase.
   double phase_stopping = 0;
