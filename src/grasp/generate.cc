@@ -47,7 +47,7 @@ PerFinger<Contact> ContactsOn(const Grasp& grasp, const Shape& shape, double tip
       contacts[i] = *hit;
       continue;
     }
-    // Eq. 6: on a sphere of the mean radius of the section orthogonal to the reach.
+    // Eq. (6): on a sphere of the mean radius of the section orthogonal to the reach.
     const Vector3d start = StartPose(grasp.reach).translation();
     const Vector3d along = GoalPose(grasp.reach).translation() - start;
     const Vector3d n = grasp.rays[i].direction.normalized();
@@ -90,7 +90,7 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
   if (options.X_WG_start) X_OG_start = X_WO.inverse() * *options.X_WG_start;
   motion.X_HO = grasp.X_HG * X_OG_goal.inverse() * MakePose(Vector3d::Zero(), turn.conjugate());
 
-  // The reach (Eq. 10-13).
+  // The reach (Eq. (10)-(13)).
   const int count = static_cast<int>(std::floor(1.5 * T / options.dt + 1e-9)) + 1;
   PoseDmp reach = WithEndpoints(grasp.reach, X_OG_start, X_OG_goal);
   reach.motion.tau = T;

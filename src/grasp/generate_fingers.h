@@ -34,7 +34,7 @@ struct FingerRun {
   std::string ratio = "balanced";  // paper | reciprocal | balanced
   double max_ratio = 16;
   bool hold =
-      true;      // profile human: closes with a rising force that then holds; paper: Eq. 7 alone
+      true;      // profile human: closes with a rising force that then holds; paper: Eq. (7) alone
   double T = 1;  // s
   double t_switch = 0.5;  // s
 };
@@ -45,8 +45,8 @@ SpringSystem MakeSystem(const FingerRun& run, const std::vector<int>& fingers);
 Eigen::MatrixXd SystemPoints(const FingerRun& run, const std::vector<int>& fingers,
                              const Fingertips& p_H, bool direction = false);
 
-// Eq. 7 with the run's gains from |a| of H's origin (m/s^2) at even steps. The sign is blended over
-// 0.05 T around the switch, since |a| is not zero there on curved reaches.
+// Eq. (7) with the run's gains from |a| of H's origin (m/s^2) at even steps. The sign is blended
+// over 0.05 T around the switch, since |a| is not zero there on curved reaches.
 CentralForce MakeRunForce(const FingerRun& run, const std::vector<double>& acceleration, double dt);
 
 // Holding force that keeps every involved tip within about 1 mm of its contact against the pull of

@@ -13,6 +13,7 @@
 namespace springgrasp {
 namespace {
 
+constexpr int kFormat = 1;       // of the file; 1 if it is not given
 constexpr double kAgree = 1e-6;  // relative; derived numbers in the file are checked, not used
 
 std::string List(const double* values, std::size_t count) {
@@ -148,7 +149,7 @@ void FormatSprings(std::string& out, const Grasp& grasp) {
   fmt::format_to(to, "  contact_stiffness: {:.17g}  # kc, N/m\n", grasp.kc);
   fmt::format_to(to, "  contact_damping: {:.17g}  # dc, N s/m\n", grasp.dc);
   fmt::format_to(to, "  ambient_damping: {:.17g}  # d0, N s/m\n", grasp.ambient_damping);
-  fmt::format_to(to, "  ratio: {}  # of Eq. 4: paper | reciprocal | balanced\n", grasp.ratio);
+  fmt::format_to(to, "  ratio: {}  # of Eq. (4): paper | reciprocal | balanced\n", grasp.ratio);
   fmt::format_to(to, "  max_ratio: {:.17g}\n", grasp.max_ratio);
   fmt::format_to(to, "  edges:  # k N/m, rest_length m, damping N s/m, at the duration below\n");
   for (const GraspEdge& edge : grasp.edges) {
@@ -270,6 +271,7 @@ void FormatQuality(std::string& out, const GraspQuality& quality) {
                  List(quality.rmse.data(), quality.rmse.size()));
   const std::vector<double> samples(quality.samples.begin(), quality.samples.end());
   fmt::format_to(to, "  samples: {}\n", List(samples));
+  fmt::format_to(to, "  begin: {:.17g}  # of the reach, s of the recording\n", quality.begin);
   fmt::format_to(to, "  reach_rmse: {:.17g}\n", quality.reach_rmse);
   fmt::format_to(to, "  aperture: [{:.17g}, {:.17g}]  # widest, observed and reproduced\n",
                  quality.aperture, quality.aperture_reproduced);
@@ -290,6 +292,7 @@ void ParseQuality(YamlReader yaml, GraspQuality& quality) {
     quality.rmse[i] = rmse[static_cast<std::size_t>(i)];
     quality.samples[i] = static_cast<int>(samples[static_cast<std::size_t>(i)]);
   }
+  yaml.Read("begin", quality.begin, Bounds{-1e6, 1e9});
   yaml.Read("reach_rmse", quality.reach_rmse, Bounds{0, 1e3});
   std::vector<double> aperture(2, 0.0), time(2, 0.0);
   yaml.Read("aperture", aperture, Bounds{0, 10});
@@ -311,6 +314,7 @@ void ParseQuality(YamlReader yaml, GraspQuality& quality) {
 std::string FormatGrasp(const Grasp& grasp) {
   std::string out = "# A grasp of the springgrasp library: SI units, quaternions w first.\n";
   auto to = std::back_inserter(out);
+  fmt::format_to(to, "format: {}\n", kFormat);
   fmt::format_to(to, "name: {}\ntype: {}\nsource: {}\nprofile: {}\n", Quoted(grasp.name),
                  grasp.type, Quoted(grasp.source), grasp.profile);
   fmt::format_to(to, "hand_length: {:.17g}\ntip_radius: {:.17g}\n", grasp.hand_length,
@@ -338,6 +342,10 @@ std::string FormatGrasp(const Grasp& grasp) {
 Grasp ParseGrasp(const std::string& text, const std::string& name) {
   YamlReader yaml = YamlReader::FromText(text, name);
   Grasp grasp;
+  int format = kFormat;
+  yaml.Read("format", format, Bounds{1, 1e6});
+  ThrowUnless(format == kFormat, "{}: format {} is not known, this program reads {}",
+              yaml.Where("format"), format, kFormat);
   ReadRequired(yaml, "name", grasp.name);
   ReadRequired(yaml, "type", grasp.type,
                std::vector<std::string>{"pinch", "tripod", "power", "lateral"});

@@ -133,10 +133,28 @@ Fingertips ContactNormals(const Grasp& grasp, const Fingertips& p_HC) {
   return normals;
 }
 
-std::size_t WidestInstant(const std::vector<Fingertips>& p_HF, const PerFinger<bool>& involved) {
+// Step of the smoothed tips at which the hand is widest, of those where every involved finger that
+// was observed had been measured within 0.06 s: a bridged gap may bulge.
+std::size_t WidestInstant(const FitProblem& fit) {
+  constexpr double kNear = 0.06;  // s
+  const auto measured = [&](double t) {
+    for (int i = 0; i < kNumFingers; ++i) {
+      if (!fit.run.involved[i] || !fit.observed[i]) continue;
+      bool near = false;
+      for (std::size_t k = 0; k < fit.sample_t.size() && !near; ++k) {
+        near = fit.sample_p_HF[k][i] && std::abs(fit.sample_t[k] - t) < kNear;
+      }
+      if (!near) return false;
+    }
+    return true;
+  };
   std::size_t widest = 0;
-  for (std::size_t n = 0; n < p_HF.size(); ++n) {
-    if (Aperture(p_HF[n], involved) > Aperture(p_HF[widest], involved)) widest = n;
+  double aperture = 0;
+  for (std::size_t n = 0; n < fit.p_HF.size(); ++n) {
+    const double now = Aperture(fit.p_HF[n], fit.run.involved);
+    if (now <= aperture || !measured(static_cast<double>(n) * fit.dt)) continue;
+    aperture = now;
+    widest = n;
   }
   return widest;
 }
@@ -332,11 +350,11 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   fit.dt = track.dt;
   fit.observed = track.observed;
   fit.noise = track.tip_noise;
-  // Eq. 7 cannot see a speed peak that lies outside the recording or at its very edge.
+  // Eq. (7) cannot see a speed peak that lies outside the recording or at its very edge.
   const double measured = segment.contact - segment.begin;
   const double peak = segment.peak - segment.begin;
   fit.fit_switch = fit.human || peak < 0.1 * measured || peak > 0.9 * measured;
-  const std::size_t widest = WidestInstant(fit.p_HF, grasp.involved);
+  const std::size_t widest = WidestInstant(fit);
   grasp.quality.aperture = Aperture(fit.p_HF[widest], grasp.involved);
   grasp.quality.aperture_time = static_cast<double>(widest) * track.dt / grasp.scales.T;
   if (fit.human) {
@@ -357,12 +375,14 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
     grasp.offset[i] = grasp.involved[i] ? Vector3d(start[i] - p_HC[i]) : start[i];
     grasp.velocity[i].setZero();
   }
+  grasp.ambient_damping = fit.rule.ambient * gains.dc;
   grasp.reach_gain = fitted.gains.reach;
   grasp.delay = fitted.gains.delay;
   grasp.closing = fitted.gains.closing;
   grasp.holding = fitted.gains.holding;
   grasp.switch_rule = fit.fit_switch ? "fitted" : "learned";
   grasp.t_switch = fitted.t_switch / grasp.scales.T;
+  grasp.quality.begin = track.t0 + segment.begin * track.dt - reach.lead;
   grasp.quality.rmse = fitted.rmse;
   grasp.quality.aperture_reproduced = fitted.aperture;
   grasp.quality.aperture_time_reproduced = fitted.aperture_time;

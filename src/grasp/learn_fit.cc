@@ -178,7 +178,7 @@ double Reproduce(const FitProblem& problem, const FingerRun& run, FitResult& res
 
 GainRule RuleOf(bool human) {
   if (human) return {};
-  return {.omega_T = 8, .zeta = 1.9, .damping = 0.07};  // the note's literal set
+  return {.omega_T = 8, .zeta = 1.9, .damping = 0.07, .ambient = 0};  // the note's literal set
 }
 
 double Aperture(const Fingertips& p_H, const PerFinger<bool>& involved) {
@@ -235,6 +235,7 @@ FitResult FitSprings(const FitProblem& problem) {
     FingerRun run = problem.run;
     if (problem.fit_switch) run.t_switch = start.t_switch * run.T;
     run.gains = RestoreGains(gains, run.gains.mass, problem.scales);
+    run.ambient_damping = problem.rule.ambient * run.gains.dc;
 
     const SpringEstimate estimate =
         EstimateSprings({MakeObservation(problem, fingers, run)}, options);

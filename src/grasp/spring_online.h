@@ -1,6 +1,6 @@
-// Spring constants while a grasp is being watched (Eq. 8-9, frame by frame): the triangular factor
-// of all rows seen so far is updated by every frame and solved whenever asked. At the end the
-// answer is that of EstimateSprings' regression over the same states.
+// Spring constants while a grasp is being watched (Eq. (8)-(9), frame by frame): the triangular
+// factor of all rows seen so far is updated by every frame and solved whenever asked. At the end
+// the answer is that of EstimateSprings' regression over the same states.
 #pragma once
 
 #include <Eigen/Core>

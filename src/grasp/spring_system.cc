@@ -32,7 +32,7 @@ bool Reciprocal(const SpringSystem& system, double f) {
 
 bool Balanced(const SpringSystem& system) { return system.ratio == ForceRatio::kBalanced; }
 
-// R of Eq. 4 before its cap, and its derivative by rho.
+// R of Eq. (4) before its cap, and its derivative by rho.
 double RatioOf(const SpringSystem& system, double rho, double f) {
   if (Balanced(system)) return f < 0 ? 1 : rho;
   return Reciprocal(system, f) ? 1 / (rho * rho) : rho * rho;
@@ -42,7 +42,7 @@ double RatioSlope(const SpringSystem& system, double rho, double f) {
   return Reciprocal(system, f) ? -2 / (rho * rho * rho) : 2 * rho;
 }
 
-// Mean of s over the virtual finger relative to the thumb's (Eq. 4); 0 where it does not apply.
+// Mean of s over the virtual finger relative to the thumb's (Eq. (4)); 0 where it does not apply.
 double DistanceRatio(const SpringSystem& system, const Eigen::VectorXd& s, int& count) {
   count = 0;
   if (!system.involved[0]) return 0;

@@ -1,4 +1,4 @@
-// Obstacle term of a movement primitive: added to Eq. 10 (our extension; the paper has none).
+// Obstacle term of a movement primitive: added to Eq. (10) (our extension; the paper has none).
 //
 // Steering: a movement that heads for the obstacle is turned aside, as people do (Fajen and Warren
 // 2003; Hoffmann et al., ICRA 2009):

@@ -75,7 +75,7 @@ TEST(DmpObstacle, ClearanceIsKeptInTwoHundredRandomReachesAndTheGoalReached) {
     coupling.obstacles = {obstacle};
     DmpState state = StartDmp(dmp);
     double least = 1;
-    for (int i = 0; i < 250; ++i) {
+    for (int i = 0; i < 200; ++i) {
       StepDmp(dmp, 0.01 * dmp.tau, state, coupling);
       least = std::min(least, ObstacleDistance(obstacle, state.x));
     }
