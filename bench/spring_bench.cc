@@ -1,13 +1,13 @@
 // Springs against Boost.Odeint's implicit solver at equal accuracy, and what learning costs.
 #include <benchmark/benchmark.h>
 
-#include <boost/numeric/odeint.hpp>
 #include <chrono>
 
 #include "grasp/spring_estimation.h"
 #include "grasp/spring_integrator.h"
 #include "grasp/spring_online.h"
 #include "grasp/spring_test_systems.h"
+#include "rosenbrock4.h"
 
 namespace springgrasp {
 namespace {
@@ -17,13 +17,9 @@ using Eigen::Index;
 using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-namespace odeint = boost::numeric::odeint;
-using UblasVector = boost::numeric::ublas::vector<double>;
-using UblasMatrix = boost::numeric::ublas::matrix<double>;
 
 constexpr double kAccuracy = 1e-7;  // m
 constexpr int kDim = 3;
-constexpr int kCoordinates = 15;
 
 // One second of the power grasp of the tests in 3-D.
 struct Case {
@@ -39,72 +35,9 @@ MatrixXd Ours(const Case& c, double step) {
   return IntegrateSprings(c.system, c.force, c.p0, c.v0, c.times, options)->p;
 }
 
-// The same equations for Odeint: state (p, v), with the analytic Jacobian.
-struct System {
-  const Case& c;
-  mutable SpringTerms terms;
-  mutable MatrixXd p = MatrixXd::Zero(kDim, 5), v = p, Jp, Jv;
-
-  void Load(const UblasVector& x) const {
-    for (int i = 0; i < kCoordinates; ++i) {
-      p.data()[i] = x[i];
-      v.data()[i] = x[i + kCoordinates];
-    }
-  }
-  void operator()(const UblasVector& x, UblasVector& dxdt, double t) const {
-    Load(x);
-    EvaluateSprings(c.system, p, v, c.force.f(t), terms);
-    for (int i = 0; i < kCoordinates; ++i) {
-      dxdt[i] = v.data()[i];
-      dxdt[i + kCoordinates] = terms.acc.data()[i];
-    }
-  }
-  void operator()(const UblasVector& x, UblasMatrix& J, double t, UblasVector& dfdt) const {
-    Load(x);
-    const double f = c.force.f(t);
-    EvaluateSprings(c.system, p, v, f, terms);
-    SpringJacobian(c.system, p, v, f, terms, Jp, Jv);
-    J = boost::numeric::ublas::zero_matrix<double>(2 * kCoordinates, 2 * kCoordinates);
-    for (int i = 0; i < kCoordinates; ++i) {
-      J(i, i + kCoordinates) = 1;
-      for (int j = 0; j < kCoordinates; ++j) {
-        J(i + kCoordinates, j) = Jp(i, j);
-        J(i + kCoordinates, j + kCoordinates) = Jv(i, j);
-      }
-    }
-    // By time only the force changes.
-    constexpr double kStep = 1e-6;
-    const MatrixXd before = terms.acc;
-    EvaluateSprings(c.system, p, v, c.force.f(t + kStep), terms);
-    for (int i = 0; i < kCoordinates; ++i) {
-      dfdt[i] = 0;
-      dfdt[i + kCoordinates] = (terms.acc.data()[i] - before.data()[i]) / kStep;
-    }
-  }
-};
-
+// By Odeint, in rosenbrock4.cc.
 MatrixXd Rosenbrock(const Case& c, double tolerance) {
-  const System system{c, {}};
-  UblasVector x(2 * kCoordinates);
-  for (int i = 0; i < kCoordinates; ++i) {
-    x[i] = c.p0.data()[i];
-    x[i + kCoordinates] = 0;
-  }
-  MatrixXd out(c.times.size(), kCoordinates);
-  for (Index n = 0; n < c.times.size(); ++n) {
-    double t = n == 0 ? 0 : c.times[n - 1];
-    while (t < c.times[n]) {
-      // Restarted at the kinks of the force, as ours.
-      const auto kink = std::upper_bound(c.force.kinks.begin(), c.force.kinks.end(), t + 1e-12);
-      const double stop = kink == c.force.kinks.end() ? c.times[n] : std::min(*kink, c.times[n]);
-      auto stepper = odeint::make_controlled<odeint::rosenbrock4<double>>(tolerance, tolerance);
-      odeint::integrate_adaptive(stepper, std::make_pair(std::cref(system), std::cref(system)), x,
-                                 t, stop, std::min(0.01, stop - t));
-      t = stop;
-    }
-    for (int i = 0; i < kCoordinates; ++i) out(n, i) = x[i];
-  }
-  return out;
+  return IntegrateByRosenbrock4(c.system, c.force, c.p0, c.v0, c.times, tolerance);
 }
 
 template <typename F>
