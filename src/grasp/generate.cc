@@ -134,7 +134,7 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
   const Vector3d from = (path.X_OG.front() * X_GH).translation();
   scales.A = std::max(0.5 * grasp.scales.A, (from - (X_OG_goal * X_GH).translation()).norm());
   run.gains = GainsFor(grasp, scales);
-  run.ambient_damping = grasp.ambient_damping;
+  run.ambient_damping = grasp.ambient_damping * (grasp.scales.T / T);
   run.ratio = grasp.ratio;
   run.max_ratio = grasp.max_ratio;
   run.hold = grasp.profile == "human";

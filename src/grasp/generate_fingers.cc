@@ -139,7 +139,8 @@ std::optional<FingerMotion> SimulateHeld(const FingerRun& run,
   const auto count = static_cast<Eigen::Index>(acceleration.size());
   const VectorXd times = VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1) * dt);
   SpringIntegration integration;
-  integration.step = std::min(dt, 0.005);
+  // The contact is stiff under a closing force: steps that follow T keep the scaling by time exact.
+  integration.step = std::min(dt, 0.004 * run.T);
   const auto trajectory =
       IntegrateSprings(system, profile, SystemPoints(run, fingers, run.p_HF),
                        SystemPoints(run, fingers, run.v_HF, true), times, integration);
@@ -185,12 +186,12 @@ double ContactError(const FingerRun& run, const FingerMotion& motion, double dt)
 std::optional<FingerMotion> SimulateFingers(const FingerRun& run,
                                             const std::vector<double>& acceleration, double dt) {
   constexpr double kLanded = 0.001;  // m
-  constexpr int kTries = 9;
+  constexpr int kTries = 16;
   double hold = run.hold ? HoldingForce(run) : 0;
   std::optional<FingerMotion> best;
   double best_error = std::numeric_limits<double>::infinity();
   // A hand that is slow against its reach is late at the contacts: it is closed harder.
-  for (int n = 0; n < (run.hold ? kTries : 1) && best_error > kLanded; ++n, hold *= 1.6) {
+  for (int n = 0; n < (run.hold ? kTries : 1) && best_error > kLanded; ++n, hold *= 1.5) {
     auto motion = SimulateHeld(run, acceleration, dt, hold);
     if (!motion) break;
     const double error = ContactError(run, *motion, dt);

@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr int kMostRows = 120;       // measured instants used; more are thinned out
+constexpr int kMostRows = 60;       // measured instants used; more are thinned out
 constexpr double kStiffness = 0.03;  // k/kc where nothing was observed, and where the fit starts
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
@@ -205,6 +205,7 @@ FitResult FitSprings(const FitProblem& problem) {
   options.trim = 0.05;
   options.gain_prior = 1;
   options.max_iterations = 25;
+  options.step = 0.01 * problem.run.T;
   // The hand rests at the start: a fitted velocity would move an over-damped tip by a jump.
   options.fit_start = false;
 
@@ -219,10 +220,12 @@ FitResult FitSprings(const FitProblem& problem) {
 
   FitResult best;
   double best_error = std::numeric_limits<double>::infinity();
+  const double enough = 0.002 + 0.5 * problem.noise;
   const std::vector<Start> starts =
       problem.human ? std::vector(std::begin(kHumanStarts), std::end(kHumanStarts))
                     : std::vector(std::begin(kPaperStarts), std::end(kPaperStarts));
   for (const Start& start : starts) {
+    if (best_error < enough) break;
     DimensionlessGains gains;
     gains.omega_T = problem.rule.omega_T;
     gains.zeta = problem.rule.zeta;

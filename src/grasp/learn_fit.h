@@ -13,8 +13,8 @@ namespace springgrasp {
 // slow auxiliary spring leaves opening and closing to the central force, which is what people's
 // hands look like; dampers between fingers drag the fingers that take no part.
 struct GainRule {
-  double omega_T = 3;     // T sqrt(kc / m): the auxiliary springs alone close slowly
-  double zeta = 3;        // over-damped, as the paper assumes
+  double omega_T = 5;  // T sqrt(kc / m): the auxiliary springs alone close slowly
+  double zeta = 12;    // over-damped, as the paper assumes; below some 10 tips swing about contacts
   double damping = 0.02;  // d_e / dc
   double ambient = 0.2;   // d0 / dc: fingers without a contact stay where they are in the hand
 };
