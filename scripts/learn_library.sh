@@ -5,12 +5,13 @@ set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 seed=${1:-1101}
 program="$root/build/release/bin/springgrasp"
-out="$root/out/library"
-mkdir -p "$out" "$root/models/grasps"
+cd "$root"
+out=out/library
+mkdir -p "$out" models/grasps
 for type in pinch tripod power lateral; do
-  "$program" observe "$root/scenes/show_$type.yaml" -o "$out/$type.csv" --truth "$out/$type.truth.csv" --seed "$seed"
+  "$program" observe "scenes/show_$type.yaml" -o "$out/$type.csv" --truth "$out/$type.truth.csv" --seed "$seed"
   "$program" learn "$out/$type.csv" --type "$type" -o "$out/$type.yaml" | tee "$out/$type.txt"
 done
 # All four or none.
-for type in pinch tripod power lateral; do cp "$out/$type.yaml" "$root/models/grasps/$type.yaml"; done
-"$program" library "$root/models/grasps"
+for type in pinch tripod power lateral; do cp "$out/$type.yaml" "models/grasps/$type.yaml"; done
+"$program" library models/grasps

@@ -1,4 +1,5 @@
 // The shipped library names the grasps of demonstrations that it never saw.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "experiment/synthesised_demonstration.h"

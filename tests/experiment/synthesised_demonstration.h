@@ -1,6 +1,8 @@
 // Synthesised demonstrations as exact fingertips plus noise, without cameras: many of them quickly.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "base/random.h"
