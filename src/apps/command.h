@@ -27,6 +27,8 @@ void AddStatusCommand(CLI::App& app, int& exit_code);
 void AddExportCommand(CLI::App& app, int& exit_code);
 void AddCheckCommand(CLI::App& app, int& exit_code);
 void AddModelCommand(CLI::App& app, int& exit_code);
+void AddLibraryCommand(CLI::App& app, int& exit_code);
+void AddRecogniseCommand(CLI::App& app, int& exit_code);
 void AddInspectCommand(CLI::App& app, int& exit_code);
 
 // A subcommand whose help ends with an example that can be pasted at the repository root. The

@@ -12,7 +12,7 @@ namespace springgrasp {
 namespace {
 
 struct Options {
-  std::string grasp, object, shape, output;
+  std::string grasp, object, shape, output, start;
   double duration = 0;
   double yaw = 0;
 };
@@ -24,6 +24,7 @@ int Generate(const Options& options) {
   generate.shape = ParseShape(options.shape);
   generate.X_WO = ParsePose(options.object, "--object");
   generate.yaw = options.yaw;
+  if (!options.start.empty()) generate.X_WG_start = ParsePose(options.start, "--start");
   if (options.duration > 0) generate.duration = options.duration;
   const FingertipMotion motion = GenerateMotion(grasp, generate);
   MakeFolderOf(options.output);
@@ -49,6 +50,9 @@ void AddGenerateCommand(CLI::App& app, int& exit_code) {
   command->add_option("-o,--output", options->output, "motion CSV")->required();
   command->add_option("--duration", options->duration, "of the reach, s (default: as demonstrated)")
       ->check(CLI::Range(0.1, 20.0));
+  command->add_option("--start", options->start,
+                      "pose of the grasp frame G at the start \"x y z qw qx qy qz\" (default: as "
+                      "demonstrated relative to the object)");
   command->add_option("--yaw", options->yaw, "turns the reach about the object's z, rad")
       ->check(CLI::Range(-6.2832, 6.2832));
   command->callback([options, &exit_code] { exit_code = Generate(*options); });

@@ -14,8 +14,8 @@ struct FingertipMotionSample {
   double t = 0;                     // s, 0 at the start of the reach
   Pose X_WG = Pose::Identity();     // grasp frame G from the DMP
   Pose X_WH = Pose::Identity();     // human hand frame H = X_WG * X_GH (demonstrated)
-  double f_cen = 0;                 // central force, N (Eq. 7)
-  PerFinger<Eigen::Vector3d> p_HF;  // fingertips in H from the springs (Eq. 5), m
+  double f_cen = 0;                 // central force, N (Eq. (7))
+  PerFinger<Eigen::Vector3d> p_HF;  // fingertips in H from the springs (Eq. (5)), m
 };
 
 struct FingertipMotion {

@@ -47,7 +47,7 @@ PerFinger<Contact> ContactsOn(const Grasp& grasp, const Shape& shape, double tip
       contacts[i] = *hit;
       continue;
     }
-    // Eq. 6: on a sphere of the mean radius of the section orthogonal to the reach.
+    // Eq. (6): on a sphere of the mean radius of the section orthogonal to the reach.
     const Vector3d start = StartPose(grasp.reach).translation();
     const Vector3d along = GoalPose(grasp.reach).translation() - start;
     const Vector3d n = grasp.rays[i].direction.normalized();
@@ -90,7 +90,7 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
   if (options.X_WG_start) X_OG_start = X_WO.inverse() * *options.X_WG_start;
   motion.X_HO = grasp.X_HG * X_OG_goal.inverse() * MakePose(Vector3d::Zero(), turn.conjugate());
 
-  // The reach (Eq. 10-13).
+  // The reach (Eq. (10)-(13)).
   const int count = static_cast<int>(std::floor(1.5 * T / options.dt + 1e-9)) + 1;
   PoseDmp reach = WithEndpoints(grasp.reach, X_OG_start, X_OG_goal);
   reach.motion.tau = T;
@@ -109,6 +109,7 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
   for (int i = 0; i < kNumFingers; ++i) {
     run.p_HC[i] = grasp.offset[i];
     run.n_H[i].setZero();
+    run.opening[i] = grasp.opening[i];
     run.p_HF[i] = grasp.offset[i];
     run.v_HF[i] = grasp.velocity[i] * (grasp.scales.T / T);
     motion.p_OC[i].setZero();
@@ -133,9 +134,10 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
   const Vector3d from = (path.X_OG.front() * X_GH).translation();
   scales.A = std::max(0.5 * grasp.scales.A, (from - (X_OG_goal * X_GH).translation()).norm());
   run.gains = GainsFor(grasp, scales);
-  run.ambient_damping = grasp.ambient_damping;
+  run.ambient_damping = grasp.ambient_damping * (grasp.scales.T / T);
   run.ratio = grasp.ratio;
   run.max_ratio = grasp.max_ratio;
+  run.hold = grasp.profile == "human";
   run.T = T;
   run.t_switch = grasp.switch_rule == "fitted" ? grasp.t_switch * T : path.t_switch;
   motion.t_switch = run.t_switch + run.gains.delay;

@@ -1,5 +1,5 @@
 // From a grasp of the library to the fingertip motion for a new object (paper section III-C):
-// DMP rollout, central force (Eq. 7), springs (Eq. 5), contacts on the new surface.
+// DMP rollout, central force (Eq. (7)), springs (Eq. (5)), contacts on the new surface.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ struct GenerateOptions {
   double dt = 0.005;               // s, step of samples and integrator
   // The shape of a reach from another start. false: the learned path about the object plus an
   // offset that fades (the plain DMP). true: the learned path turned and scaled with the vector
-  // from start to goal: the forcing term of Eq. 12 with its position weights turned and scaled
+  // from start to goal: the forcing term of Eq. (12) with its position weights turned and scaled
   // alike. For robots whose start lies elsewhere than the demonstrator's.
   bool similar_reach = false;
   // Further rotation of the whole reach about the object's z, rad (what symmetry leaves free).
@@ -33,7 +33,7 @@ struct GenerateOptions {
 FingertipMotion GenerateMotion(const Grasp& grasp, const GenerateOptions& options);
 
 // Contacts of the involved fingers on a shape: the learned rays, or where one meets no surface a
-// point at the mean section radius (Eq. 6).
+// point at the mean section radius (Eq. (6)).
 PerFinger<Contact> ContactsOn(const Grasp& grasp, const Shape& shape, double tip_radius);
 
 }  // namespace springgrasp

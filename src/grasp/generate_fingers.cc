@@ -17,11 +17,6 @@ using Eigen::VectorXd;
 
 constexpr double kBlend = 0.05;  // of T; spring-model note, section 6
 
-double SmoothStep(double x) {
-  x = std::clamp(x, 0.0, 1.0);
-  return x * x * (3 - 2 * x);
-}
-
 }  // namespace
 
 MatrixXd SystemPoints(const FingerRun& run, const std::vector<int>& fingers, const Fingertips& p_H,
@@ -35,6 +30,28 @@ MatrixXd SystemPoints(const FingerRun& run, const std::vector<int>& fingers, con
   }
   return points;
 }
+
+namespace {
+
+// Outward normals (unit), or the preshape in units of its mean length.
+MatrixXd OpeningDirections(const FingerRun& run, const std::vector<int>& fingers) {
+  double length = 0;
+  int count = 0;
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (!run.involved[i]) continue;
+    length += run.opening[i].norm();
+    ++count;
+  }
+  if (length > 0) return SystemPoints(run, fingers, run.opening, true) * (count / length);
+  MatrixXd normals = SystemPoints(run, fingers, run.n_H, true);
+  for (Eigen::Index n = 0; n < normals.cols(); ++n) {
+    const double norm = normals.col(n).norm();
+    if (norm > 1e-6) normals.col(n) /= norm;  // in the plane a normal gets shorter
+  }
+  return normals;
+}
+
+}  // namespace
 
 SpringSystem MakeSystem(const FingerRun& run, const std::vector<int>& fingers) {
   const int count = static_cast<int>(fingers.size());
@@ -50,11 +67,7 @@ SpringSystem MakeSystem(const FingerRun& run, const std::vector<int>& fingers) {
     system.springs.push_back({i, j, run.gains.k[e], run.rest_lengths[e], run.gains.d[e]});
   }
   system.anchors = SystemPoints(run, fingers, run.p_HC);
-  system.normals = SystemPoints(run, fingers, run.n_H, true);
-  for (Eigen::Index n = 0; n < system.normals.cols(); ++n) {
-    const double norm = system.normals.col(n).norm();
-    if (norm > 1e-6) system.normals.col(n) /= norm;  // in the plane a normal gets shorter
-  }
+  system.normals = OpeningDirections(run, fingers);
   for (int n = 0; n < count; ++n) {
     system.involved[static_cast<std::size_t>(n)] =
         run.involved[fingers[static_cast<std::size_t>(n)]];
@@ -63,7 +76,9 @@ SpringSystem MakeSystem(const FingerRun& run, const std::vector<int>& fingers) {
   system.dc = run.gains.dc;
   system.d0 = run.ambient_damping;
   system.r_max = run.max_ratio;
-  system.ratio = run.ratio == "paper" ? ForceRatio::kPaper : ForceRatio::kReciprocal;
+  system.ratio = run.ratio == "paper"        ? ForceRatio::kPaper
+                 : run.ratio == "reciprocal" ? ForceRatio::kReciprocal
+                                             : ForceRatio::kBalanced;
   system.opening = OpeningDirection::kOutward;
   return system;
 }
@@ -83,7 +98,9 @@ CentralForce MakeRunForce(const FingerRun& run, const std::vector<double>& accel
   force.blend = kBlend * run.T;
   force.delay = run.gains.delay;
   force.beta = run.gains.closing;
+  if (!run.hold) return force;
   force.hold = HoldingForce(run);
+  force.ramp = true;
   return force;
 }
 
@@ -117,20 +134,13 @@ std::optional<FingerMotion> SimulateHeld(const FingerRun& run,
   const SpringSystem system = MakeSystem(run, fingers);
   CentralForce force = MakeRunForce(run, acceleration, dt);
   force.hold = hold;
-  const double closes = run.t_switch + run.gains.delay;
-  const double ramp = std::max(run.T - closes, kBlend * run.T);
-  ForceProfile profile;
-  profile.kinks = CentralForceKinks(force);
-  profile.f = [&force, closes, ramp](double t) {
-    const double f = EvaluateCentralForce(force, t);
-    if (t <= closes) return f;
-    return std::max(f, force.hold * SmoothStep((t - closes) / ramp));
-  };
+  const ForceProfile profile = MakeForceProfile(force);
 
   const auto count = static_cast<Eigen::Index>(acceleration.size());
   const VectorXd times = VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1) * dt);
   SpringIntegration integration;
-  integration.step = std::min(dt, 0.005);
+  // The contact is stiff under a closing force: steps that follow T keep the scaling by time exact.
+  integration.step = std::min(dt, 0.004 * run.T);
   const auto trajectory =
       IntegrateSprings(system, profile, SystemPoints(run, fingers, run.p_HF),
                        SystemPoints(run, fingers, run.v_HF, true), times, integration);
@@ -176,12 +186,12 @@ double ContactError(const FingerRun& run, const FingerMotion& motion, double dt)
 std::optional<FingerMotion> SimulateFingers(const FingerRun& run,
                                             const std::vector<double>& acceleration, double dt) {
   constexpr double kLanded = 0.001;  // m
-  constexpr int kTries = 9;
-  double hold = HoldingForce(run);
+  constexpr int kTries = 16;
+  double hold = run.hold ? HoldingForce(run) : 0;
   std::optional<FingerMotion> best;
   double best_error = std::numeric_limits<double>::infinity();
   // A hand that is slow against its reach is late at the contacts: it is closed harder.
-  for (int n = 0; n < kTries && best_error > kLanded; ++n, hold *= 1.6) {
+  for (int n = 0; n < (run.hold ? kTries : 1) && best_error > kLanded; ++n, hold *= 1.5) {
     auto motion = SimulateHeld(run, acceleration, dt, hold);
     if (!motion) break;
     const double error = ContactError(run, *motion, dt);

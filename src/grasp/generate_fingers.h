@@ -27,10 +27,15 @@ struct FingerRun {
   std::vector<std::pair<int, int>> edges;
   std::vector<double> rest_lengths;  // per edge, m
   SpringGains gains;
-  double ambient_damping = 0;        // N s/m
-  std::string ratio = "reciprocal";  // paper | reciprocal
+  double ambient_damping = 0;  // N s/m
+  // Preshape of the involved fingers from their contacts in H, m; all zero: along n_H.
+  Fingertips opening = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                        Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  std::string ratio = "balanced";  // paper | reciprocal | balanced
   double max_ratio = 16;
-  double T = 1;           // s
+  bool hold =
+      true;      // profile human: closes with a rising force that then holds; paper: Eq. (7) alone
+  double T = 1;  // s
   double t_switch = 0.5;  // s
 };
 
@@ -40,8 +45,8 @@ SpringSystem MakeSystem(const FingerRun& run, const std::vector<int>& fingers);
 Eigen::MatrixXd SystemPoints(const FingerRun& run, const std::vector<int>& fingers,
                              const Fingertips& p_H, bool direction = false);
 
-// Eq. 7 with the run's gains from |a| of H's origin (m/s^2) at even steps. The sign is blended over
-// 0.05 T around the switch, since |a| is not zero there on curved reaches.
+// Eq. (7) with the run's gains from |a| of H's origin (m/s^2) at even steps. The sign is blended
+// over 0.05 T around the switch, since |a| is not zero there on curved reaches.
 CentralForce MakeRunForce(const FingerRun& run, const std::vector<double>& acceleration, double dt);
 
 // Holding force that keeps every involved tip within about 1 mm of its contact against the pull of
@@ -53,10 +58,10 @@ struct FingerMotion {
   std::vector<double> f_cen;     // N
 };
 
-// Fingertips in H at even steps of `dt`. After the switch the central force never falls below a
-// ramp that rises to the holding force at T; that force is raised where the tips would not have
-// landed at T (spring-model note, section 5: slower hands miss the contact). Nothing if the springs
-// run away.
+// Fingertips in H at even steps of `dt`. With `hold`, the central force after the switch never
+// falls below a ramp that rises to the holding force at T; that force is raised where the tips
+// would not have landed at T (spring-model note, section 5: slower hands miss the contact). Nothing
+// if the springs run away.
 std::optional<FingerMotion> SimulateFingers(const FingerRun& run,
                                             const std::vector<double>& acceleration, double dt);
 

@@ -58,6 +58,10 @@ std::string ReportGrasp(const Grasp& grasp) {
                  "gains: gamma A/(m x0) {:.1f}, omega T {:.2f}, zeta {:.2f}, delay {:.2f} T, "
                  "closing {:.2f}, holding {:.2f}\n",
                  gains.reach, gains.omega_T, gains.zeta, gains.delay, gains.closing, gains.holding);
+  const GraspQuality& quality = grasp.quality;
+  fmt::format_to(to, "aperture: {:.1f} mm at {:.2f} T, reproduced {:.1f} mm at {:.2f} T\n",
+                 1e3 * quality.aperture, quality.aperture_time, 1e3 * quality.aperture_reproduced,
+                 quality.aperture_time_reproduced);
   if (grasp.dim == 2) {
     fmt::format_to(to, "planarity residual: {:.1f} mm\n", 1e3 * grasp.quality.planarity);
   }

@@ -16,7 +16,7 @@
 
 namespace springgrasp {
 
-// A virtual spring between two fingers (Eq. 1).
+// A virtual spring between two fingers (Eq. (1)).
 struct GraspEdge {
   int i = 0, j = 1;           // fingers
   double k = 0;               // N/m, at the demonstrated duration
@@ -27,10 +27,15 @@ struct GraspEdge {
 
 // How well the grasp reproduces what it was learned from.
 struct GraspQuality {
-  PerFinger<double> rmse = {};  // reproduced against observed tips in H, m; 0 if not observed
+  PerFinger<double> rmse = {};  // reproduced against smoothed tips in H, m; 0 if not observed
   PerFinger<int> samples = {};  // observed samples that the error is taken over
+  double begin = 0;             // time of the recording at which the reach begins, s
   double reach_rmse = 0;        // DMP against observed hand, m
-  double condition_number = 0;  // of the scaled regression (Eq. 8)
+  // Widest aperture between thumb and the other involved tips (m) and its time (of T), observed and
+  // reproduced.
+  double aperture = 0, aperture_time = 0;
+  double aperture_reproduced = 0, aperture_time_reproduced = 0;
+  double condition_number = 0;  // of the scaled regression (Eq. (8))
   double planarity = 0;         // RMS distance of the involved tips from the hand plane, m
   double noise = 0;             // estimated deviation of one fingertip coordinate, m
 };
@@ -53,22 +58,27 @@ struct Grasp {
   int dim = 3;                   // 2: the paper's, in the plane below; 3
   Pose X_HP = Pose::Identity();  // hand plane P (dim 2): origin the contact centroid, z normal
   double mass = 0.02;            // of every fingertip, kg
-  double kc = 1, dc = 0.3;       // contact stiffness N/m and damping N s/m (Eq. 3)
+  double kc = 1, dc = 0.3;       // contact stiffness N/m and damping N s/m (Eq. (3))
   std::vector<GraspEdge> edges;
   double ambient_damping = 0;           // d0, N s/m
   double reach_gain = 50;               // gamma A / (m x0)
   double delay = 0;                     // of f_cen, fraction of T
   double closing = 1;                   // beta
   double holding = 0.5;                 // f_cen after T / (kc x0)
-  std::string ratio = "reciprocal";     // paper | reciprocal: Eq. 4 while f_cen < 0
+  std::string ratio = "balanced";       // paper | reciprocal | balanced: Eq. (4) while f_cen < 0
   double max_ratio = 16;                // Rmax
-  std::string switch_rule = "learned";  // learned: peak speed (Eq. 7); fitted: t_switch below
+  std::string switch_rule = "learned";  // learned: peak speed (Eq. (7)); fitted: t_switch below
   double t_switch = 0.5;                // fraction of T
 
   // At the start, relative to the contacts (uninvolved fingers: in H), m and m/s.
   PerFinger<Eigen::Vector3d> offset;
   PerFinger<Eigen::Vector3d> velocity;
   PerFinger<bool> observed = {};  // false: never seen, posed at rest
+  // Preshape: where f_cen < 0 pushes an involved finger, from its contact in H, m; their lengths
+  // share the force (ratio balanced). Zero: along the outward normal.
+  PerFinger<Eigen::Vector3d> opening = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                        Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                        Eigen::Vector3d::Zero()};
 
   ReachScales scales;  // T, A, x0 of the demonstration
   PoseDmp reach;       // of G in O

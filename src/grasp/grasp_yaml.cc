@@ -13,6 +13,7 @@
 namespace springgrasp {
 namespace {
 
+constexpr int kFormat = 1;       // of the file; 1 if it is not given
 constexpr double kAgree = 1e-6;  // relative; derived numbers in the file are checked, not used
 
 std::string List(const double* values, std::size_t count) {
@@ -148,7 +149,7 @@ void FormatSprings(std::string& out, const Grasp& grasp) {
   fmt::format_to(to, "  contact_stiffness: {:.17g}  # kc, N/m\n", grasp.kc);
   fmt::format_to(to, "  contact_damping: {:.17g}  # dc, N s/m\n", grasp.dc);
   fmt::format_to(to, "  ambient_damping: {:.17g}  # d0, N s/m\n", grasp.ambient_damping);
-  fmt::format_to(to, "  ratio: {}  # of Eq. 4: paper | reciprocal\n", grasp.ratio);
+  fmt::format_to(to, "  ratio: {}  # of Eq. (4): paper | reciprocal | balanced\n", grasp.ratio);
   fmt::format_to(to, "  max_ratio: {:.17g}\n", grasp.max_ratio);
   fmt::format_to(to, "  edges:  # k N/m, rest_length m, damping N s/m, at the duration below\n");
   for (const GraspEdge& edge : grasp.edges) {
@@ -177,7 +178,7 @@ void ParseSprings(YamlReader& yaml, Grasp& grasp) {
   ReadRequired(springs, "contact_stiffness", grasp.kc, Bounds{1e-9, 1e9});
   ReadRequired(springs, "contact_damping", grasp.dc, Bounds{0, 1e9});
   springs.Read("ambient_damping", grasp.ambient_damping, Bounds{0, 1e9});
-  springs.Read("ratio", grasp.ratio, {"paper", "reciprocal"});
+  springs.Read("ratio", grasp.ratio, {"paper", "reciprocal", "balanced"});
   springs.Read("max_ratio", grasp.max_ratio, Bounds{1, 1e6});
   springs.Require("edges");
   for (YamlReader& item : springs.Children("edges")) {
@@ -231,6 +232,9 @@ void FormatFingers(std::string& out, const Grasp& grasp) {
     }
     fmt::format_to(to, "    offset: {}\n", List(grasp.offset[i]));
     fmt::format_to(to, "    velocity: {}\n", List(grasp.velocity[i]));
+    if (grasp.involved[i] && !grasp.opening[i].isZero(0)) {
+      fmt::format_to(to, "    opening: {}  # from the contact in H, m\n", List(grasp.opening[i]));
+    }
   }
 }
 
@@ -252,6 +256,7 @@ void ParseFingers(YamlReader& yaml, Grasp& grasp) {
     }
     ReadRequired(item, "offset", grasp.offset[i], Bounds{-2, 2});
     item.Read("velocity", grasp.velocity[i], Bounds{-20, 20});
+    if (grasp.involved[i]) item.Read("opening", grasp.opening[i], Bounds{-2, 2});
     item.Finish();
   }
   for (int i = 0; i < kNumFingers; ++i) {
@@ -266,7 +271,12 @@ void FormatQuality(std::string& out, const GraspQuality& quality) {
                  List(quality.rmse.data(), quality.rmse.size()));
   const std::vector<double> samples(quality.samples.begin(), quality.samples.end());
   fmt::format_to(to, "  samples: {}\n", List(samples));
+  fmt::format_to(to, "  begin: {:.17g}  # of the reach, s of the recording\n", quality.begin);
   fmt::format_to(to, "  reach_rmse: {:.17g}\n", quality.reach_rmse);
+  fmt::format_to(to, "  aperture: [{:.17g}, {:.17g}]  # widest, observed and reproduced\n",
+                 quality.aperture, quality.aperture_reproduced);
+  fmt::format_to(to, "  aperture_time: [{:.17g}, {:.17g}]  # fractions of T\n",
+                 quality.aperture_time, quality.aperture_time_reproduced);
   fmt::format_to(to, "  condition_number: {:.17g}\n", quality.condition_number);
   fmt::format_to(to, "  planarity: {:.17g}\n", quality.planarity);
   fmt::format_to(to, "  noise: {:.17g}\n", quality.noise);
@@ -282,7 +292,17 @@ void ParseQuality(YamlReader yaml, GraspQuality& quality) {
     quality.rmse[i] = rmse[static_cast<std::size_t>(i)];
     quality.samples[i] = static_cast<int>(samples[static_cast<std::size_t>(i)]);
   }
+  yaml.Read("begin", quality.begin, Bounds{-1e6, 1e9});
   yaml.Read("reach_rmse", quality.reach_rmse, Bounds{0, 1e3});
+  std::vector<double> aperture(2, 0.0), time(2, 0.0);
+  yaml.Read("aperture", aperture, Bounds{0, 10});
+  yaml.Read("aperture_time", time, Bounds{0, 10});
+  ThrowUnless(aperture.size() == 2 && time.size() == 2,
+              "{}: aperture and aperture_time need 2 numbers", yaml.Where("aperture"));
+  quality.aperture = aperture[0];
+  quality.aperture_reproduced = aperture[1];
+  quality.aperture_time = time[0];
+  quality.aperture_time_reproduced = time[1];
   yaml.Read("condition_number", quality.condition_number, Bounds{0, 1e300});
   yaml.Read("planarity", quality.planarity, Bounds{0, 1e3});
   yaml.Read("noise", quality.noise, Bounds{0, 1e3});
@@ -294,6 +314,7 @@ void ParseQuality(YamlReader yaml, GraspQuality& quality) {
 std::string FormatGrasp(const Grasp& grasp) {
   std::string out = "# A grasp of the springgrasp library: SI units, quaternions w first.\n";
   auto to = std::back_inserter(out);
+  fmt::format_to(to, "format: {}\n", kFormat);
   fmt::format_to(to, "name: {}\ntype: {}\nsource: {}\nprofile: {}\n", Quoted(grasp.name),
                  grasp.type, Quoted(grasp.source), grasp.profile);
   fmt::format_to(to, "hand_length: {:.17g}\ntip_radius: {:.17g}\n", grasp.hand_length,
@@ -321,6 +342,10 @@ std::string FormatGrasp(const Grasp& grasp) {
 Grasp ParseGrasp(const std::string& text, const std::string& name) {
   YamlReader yaml = YamlReader::FromText(text, name);
   Grasp grasp;
+  int format = kFormat;
+  yaml.Read("format", format, Bounds{1, 1e6});
+  ThrowUnless(format == kFormat, "{}: format {} is not known, this program reads {}",
+              yaml.Where("format"), format, kFormat);
   ReadRequired(yaml, "name", grasp.name);
   ReadRequired(yaml, "type", grasp.type,
                std::vector<std::string>{"pinch", "tripod", "power", "lateral"});

@@ -133,6 +133,56 @@ Fingertips ContactNormals(const Grasp& grasp, const Fingertips& p_HC) {
   return normals;
 }
 
+// Step of the smoothed tips at which the hand is widest, of those where every involved finger that
+// was observed had been measured within 0.06 s: a bridged gap may bulge.
+std::size_t WidestInstant(const FitProblem& fit) {
+  constexpr double kNear = 0.06;  // s
+  const auto measured = [&](double t) {
+    for (int i = 0; i < kNumFingers; ++i) {
+      if (!fit.run.involved[i] || !fit.observed[i]) continue;
+      bool near = false;
+      for (std::size_t k = 0; k < fit.sample_t.size() && !near; ++k) {
+        near = fit.sample_p_HF[k][i] && std::abs(fit.sample_t[k] - t) < kNear;
+      }
+      if (!near) return false;
+    }
+    return true;
+  };
+  std::size_t widest = 0;
+  double aperture = 0;
+  for (std::size_t n = 0; n < fit.p_HF.size(); ++n) {
+    const double now = Aperture(fit.p_HF[n], fit.run.involved);
+    if (now <= aperture || !measured(static_cast<double>(n) * fit.dt)) continue;
+    aperture = now;
+    widest = n;
+  }
+  return widest;
+}
+
+// Where f_cen < 0 must push the involved fingers so that they are at `widest` then, s of T after
+// the start: what the auxiliary springs alone leave of the start is taken off.
+Fingertips Preshape(const FitProblem& fit, double s, const Fingertips& widest) {
+  const double damped = fit.rule.omega_T * fit.rule.zeta;
+  const double split =
+      fit.rule.omega_T * std::sqrt(std::max(1e-6, fit.rule.zeta * fit.rule.zeta - 1));
+  const double left =
+      std::exp(-damped * s) * (std::cosh(split * s) + damped / split * std::sinh(split * s));
+  Fingertips opening;
+  opening.fill(Vector3d::Zero());
+  double mean = 0;
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (!fit.run.involved[i]) continue;
+    opening[i] = widest[i] - fit.run.p_HC[i] - left * (fit.run.p_HF[i] - fit.run.p_HC[i]);
+    mean += opening[i].norm();
+  }
+  // A hand that only closes: the way back to its start.
+  if (mean > 0.01) return opening;
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (fit.run.involved[i]) opening[i] = fit.run.p_HF[i] - fit.run.p_HC[i];
+  }
+  return opening;
+}
+
 // The speed that noise alone leaves in smoothed positions: what a hand at rest seems to move by.
 double SpeedOfNoise(double noise) { return 8 * noise; }  // 1/s: deviation after a 5 Hz low-pass
 
@@ -287,7 +337,10 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
     fit.run.rest_lengths.push_back((relaxed[i] - relaxed[j]).norm());
   }
   fit.run.gains.mass = grasp.mass;
-  fit.run.ratio = grasp.ratio = options.profile == "paper" ? "paper" : "reciprocal";
+  fit.human = options.profile == "human";
+  fit.rule = RuleOf(fit.human);
+  fit.run.ratio = grasp.ratio = fit.human ? "balanced" : "paper";
+  fit.run.hold = fit.human;
   fit.run.max_ratio = grasp.max_ratio;
   fit.run.T = grasp.scales.T;
   fit.run.t_switch = path.t_switch;
@@ -297,11 +350,17 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   fit.dt = track.dt;
   fit.observed = track.observed;
   fit.noise = track.tip_noise;
-  fit.human = options.profile == "human";
-  // Eq. 7 cannot see a speed peak that lies outside the recording or at its very edge.
+  // Eq. (7) cannot see a speed peak that lies outside the recording or at its very edge.
   const double measured = segment.contact - segment.begin;
   const double peak = segment.peak - segment.begin;
-  fit.fit_switch = peak < 0.1 * measured || peak > 0.9 * measured;
+  fit.fit_switch = fit.human || peak < 0.1 * measured || peak > 0.9 * measured;
+  const std::size_t widest = WidestInstant(fit);
+  grasp.quality.aperture = Aperture(fit.p_HF[widest], grasp.involved);
+  grasp.quality.aperture_time = static_cast<double>(widest) * track.dt / grasp.scales.T;
+  if (fit.human) {
+    grasp.opening = Preshape(fit, grasp.quality.aperture_time, fit.p_HF[widest]);
+    fit.run.opening = grasp.opening;
+  }
   const FitResult fitted = FitSprings(fit);
 
   const SpringGains gains = RestoreGains(fitted.gains, grasp.mass, grasp.scales);
@@ -316,13 +375,17 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
     grasp.offset[i] = grasp.involved[i] ? Vector3d(start[i] - p_HC[i]) : start[i];
     grasp.velocity[i].setZero();
   }
+  grasp.ambient_damping = fit.rule.ambient * gains.dc;
   grasp.reach_gain = fitted.gains.reach;
   grasp.delay = fitted.gains.delay;
   grasp.closing = fitted.gains.closing;
   grasp.holding = fitted.gains.holding;
   grasp.switch_rule = fit.fit_switch ? "fitted" : "learned";
   grasp.t_switch = fitted.t_switch / grasp.scales.T;
+  grasp.quality.begin = track.t0 + segment.begin * track.dt - reach.lead;
   grasp.quality.rmse = fitted.rmse;
+  grasp.quality.aperture_reproduced = fitted.aperture;
+  grasp.quality.aperture_time_reproduced = fitted.aperture_time;
   grasp.quality.samples = fitted.samples;
   grasp.quality.condition_number = fitted.condition_number;
   grasp.quality.noise = track.tip_noise;

@@ -15,19 +15,17 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr int kMostRows = 120;       // measured instants used; more are thinned out
+constexpr int kMostRows = 60;       // measured instants used; more are thinned out
 constexpr double kStiffness = 0.03;  // k/kc where nothing was observed, and where the fit starts
-constexpr double kDamping = 0.07;    // d_e/dc at the start (spring-model note, section 5)
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-// Where a fit starts: hands that close early, late, or follow the force without inertia.
+// Where a fit starts. `reach` is gamma A / (m times the mean opening).
 struct Start {
-  double omega_T, zeta, reach, delay, closing;
+  double reach, delay, closing, t_switch;
 };
 constexpr Start kHumanStarts[] = {
-    {10, 1.5, 50, 0.15, 1.5}, {5, 2.0, 20, 0.2, 3}, {3.5, 30, 60, 0.2, 3}, {10, 2, 5, 0.2, 3}};
-constexpr Start kPaperStarts[] = {
-    {8, 1.9, 40, 0, 1}, {5, 1.5, 20, 0, 1}, {3.5, 30, 60, 0, 1}, {10, 2, 5, 0, 1}};
+    {40, 0.1, 0.6, 0.55}, {40, 0.02, 0.5, 0.65}, {40, 0.2, 1, 0.45}, {10, 0.2, 3, 0.7}};
+constexpr Start kPaperStarts[] = {{40, 0, 1, 0.5}, {15, 0, 1, 0.5}, {5, 0, 1, 0.5}};
 
 double Between(double a, double b, double fraction) { return (1 - fraction) * a + fraction * b; }
 
@@ -122,14 +120,8 @@ std::vector<std::size_t> EdgesBetween(const FingerRun& run, const std::vector<in
   return edges;
 }
 
-// Puts an estimate into a run. Contact and gains are kept over-damped, as the paper assumes, and
-// quick enough to come to rest at the contacts: below that tips swing through them.
 void Apply(const SpringEstimate& estimate, const std::vector<std::size_t>& edges, FingerRun& run) {
   SpringGains& gains = run.gains;
-  gains.kc *= estimate.kc_factor;
-  gains.dc *= estimate.dc_factor;
-  for (double& k : gains.k) k *= estimate.kc_factor;
-  for (double& d : gains.d) d *= estimate.damping_factor;
   for (std::size_t e = 0; e < edges.size(); ++e) {
     gains.k[edges[e]] = std::max(0.0, estimate.k[static_cast<Eigen::Index>(e)]);
   }
@@ -139,46 +131,66 @@ void Apply(const SpringEstimate& estimate, const std::vector<std::size_t>& edges
   run.t_switch = estimate.t_switch;
 }
 
-// Smallest contact damping that is over-damped and settles within the reach, N s/m.
-double LeastDamping(const FingerRun& run) {
-  return std::max(2 * std::sqrt(run.gains.kc * run.gains.mass), 16 * run.gains.mass / run.T);
-}
-
-// Reproduction errors of a run over the measured samples; returns the RMS over everything
-// measured, the distance of the involved tips from their contacts at T included.
+// Reproduction errors of a run against the smoothed track while it was measured; returns the RMS
+// over all fingers, the distance of the involved tips from their contacts at T included.
 double Reproduce(const FitProblem& problem, const FingerRun& run, FitResult& result) {
   const auto motion = SimulateFingers(run, problem.acceleration, problem.dt);
-  if (!motion) return std::numeric_limits<double>::infinity();
+  if (!motion || problem.sample_t.empty()) return std::numeric_limits<double>::infinity();
   PerFinger<double> sum = {};
   double total = 0;
   double count = 0;
-  const auto at = [&](double t, int i) -> Vector3d {
+  const auto at = [&](const std::vector<Fingertips>& tips, double t, int i) -> Vector3d {
     const double position = t / problem.dt;
-    const auto n = std::min(static_cast<std::size_t>(position), motion->p_HF.size() - 2);
-    const double fraction = position - static_cast<double>(n);
-    return (1 - fraction) * motion->p_HF[n][i] + fraction * motion->p_HF[n + 1][i];
+    const auto n = std::min(static_cast<std::size_t>(position), tips.size() - 2);
+    const double fraction = std::min(1.0, position - static_cast<double>(n));
+    return (1 - fraction) * tips[n][i] + fraction * tips[n + 1][i];
   };
   for (std::size_t n = 0; n < problem.sample_t.size(); ++n) {
     for (int i = 0; i < kNumFingers; ++i) {
       if (!problem.sample_p_HF[n][i]) continue;
-      const double square = (at(problem.sample_t[n], i) - *problem.sample_p_HF[n][i]).squaredNorm();
+      const double t = problem.sample_t[n];
+      const double square = (at(motion->p_HF, t, i) - at(problem.p_HF, t, i)).squaredNorm();
       sum[i] += square;
       ++result.samples[i];
       total += square;
       ++count;
     }
   }
-  const double weight = 0.3 * count;
+  for (std::size_t n = 0; n < problem.p_HF.size(); ++n) {
+    const double aperture = Aperture(motion->p_HF[n], run.involved);
+    if (aperture <= result.aperture) continue;
+    result.aperture = aperture;
+    result.aperture_time = static_cast<double>(n) * problem.dt / run.T;
+  }
+  const double weight = 0.1 * count;
   for (int i = 0; i < kNumFingers; ++i) {
     if (result.samples[i] > 0) result.rmse[i] = std::sqrt(sum[i] / result.samples[i]);
     if (!run.involved[i]) continue;
-    total += weight * (at(run.T, i) - run.p_HC[i]).squaredNorm();
+    const auto end = std::min(static_cast<std::size_t>(std::lround(run.T / problem.dt)),
+                              motion->p_HF.size() - 1);
+    total += weight * (motion->p_HF[end][i] - run.p_HC[i]).squaredNorm();
     count += weight;
   }
   return std::sqrt(total / std::max(1.0, count));
 }
 
 }  // namespace
+
+GainRule RuleOf(bool human) {
+  if (human) return {};
+  return {.omega_T = 8, .zeta = 1.9, .damping = 0.07, .ambient = 0};  // the note's literal set
+}
+
+double Aperture(const Fingertips& p_H, const PerFinger<bool>& involved) {
+  Vector3d mean = Vector3d::Zero();
+  int count = 0;
+  for (int i = kIndex; i < kNumFingers; ++i) {
+    if (!involved[i]) continue;
+    mean += p_H[i];
+    ++count;
+  }
+  return (mean / std::max(1, count) - p_H[kThumb]).norm();
+}
 
 FitResult FitSprings(const FitProblem& problem) {
   std::vector<int> fingers;
@@ -187,42 +199,50 @@ FitResult FitSprings(const FitProblem& problem) {
   }
   const std::vector<std::size_t> edges = EdgesBetween(problem.run, fingers);
   EstimationOptions options;
-  options.fit.gamma = options.fit.damping = options.fit.contact = true;
+  options.fit.gamma = true;
   options.fit.beta = options.fit.delay = problem.human;
   options.fit.t_switch = problem.fit_switch;
   options.trim = 0.05;
-  options.gain_prior = 0.1;
+  options.gain_prior = 1;
   options.max_iterations = 25;
+  options.step = 0.01 * problem.run.T;
   // The hand rests at the start: a fitted velocity would move an over-damped tip by a jump.
   options.fit_start = false;
 
+  double opening = 0;
+  int involved = 0;
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (!problem.run.involved[i]) continue;
+    opening += problem.run.opening[i].norm();
+    ++involved;
+  }
+  opening = opening > 0 ? opening / involved : problem.scales.x0;
+
   FitResult best;
   double best_error = std::numeric_limits<double>::infinity();
-  const double enough = 0.004 + 1.8 * problem.noise;  // 1.7: three coordinates
-  for (const Start& start : problem.human ? kHumanStarts : kPaperStarts) {
+  const double enough = 0.002 + 0.5 * problem.noise;
+  const std::vector<Start> starts =
+      problem.human ? std::vector(std::begin(kHumanStarts), std::end(kHumanStarts))
+                    : std::vector(std::begin(kPaperStarts), std::end(kPaperStarts));
+  for (const Start& start : starts) {
     if (best_error < enough) break;
     DimensionlessGains gains;
-    gains.omega_T = start.omega_T;
-    gains.zeta = start.zeta;
-    gains.reach = start.reach;
+    gains.omega_T = problem.rule.omega_T;
+    gains.zeta = problem.rule.zeta;
+    gains.reach = start.reach * opening / problem.scales.x0;
     gains.delay = start.delay;
     gains.closing = start.closing;
+    gains.holding = problem.human ? 0.5 : 0;
     gains.stiffness.assign(problem.run.edges.size(), kStiffness);
-    gains.damping.assign(problem.run.edges.size(), kDamping);
+    gains.damping.assign(problem.run.edges.size(), problem.rule.damping);
     FingerRun run = problem.run;
-    if (problem.fit_switch) run.t_switch = 0.45 * run.T;
+    if (problem.fit_switch) run.t_switch = start.t_switch * run.T;
     run.gains = RestoreGains(gains, run.gains.mass, problem.scales);
+    run.ambient_damping = problem.rule.ambient * run.gains.dc;
 
-    SpringEstimate estimate = EstimateSprings({MakeObservation(problem, fingers, run)}, options);
+    const SpringEstimate estimate =
+        EstimateSprings({MakeObservation(problem, fingers, run)}, options);
     Apply(estimate, edges, run);
-    if (run.gains.dc < LeastDamping(run)) {
-      // Again with that damping fixed.
-      run.gains.dc = LeastDamping(run);
-      EstimationOptions fixed = options;
-      fixed.fit.contact = false;
-      estimate = EstimateSprings({MakeObservation(problem, fingers, run)}, fixed);
-      Apply(estimate, edges, run);
-    }
     FitResult result;
     result.standard_errors.assign(run.edges.size(), 0.0);
     for (std::size_t e = 0; e < edges.size(); ++e) {

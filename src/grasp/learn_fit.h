@@ -9,6 +9,17 @@
 
 namespace springgrasp {
 
+// What is not fitted. Chosen on synthesised demonstrations of the four types (seeds 1 and 2): a
+// slow auxiliary spring leaves opening and closing to the central force, which is what people's
+// hands look like; dampers between fingers drag the fingers that take no part.
+struct GainRule {
+  double omega_T = 5;  // T sqrt(kc / m): the auxiliary springs alone close slowly
+  double zeta = 12;    // over-damped, as the paper assumes; below some 10 tips swing about contacts
+  double damping = 0.02;  // d_e / dc
+  double ambient = 0.2;   // d0 / dc: fingers without a contact stay where they are in the hand
+};
+GainRule RuleOf(bool human);
+
 struct FitProblem {
   FingerRun run;  // start, contacts, edges, T, t_switch; gains are found
   ReachScales scales;
@@ -22,20 +33,26 @@ struct FitProblem {
   double noise = 0;   // deviation of a measured coordinate, m
   bool human = true;  // fit delay and closing gain
   bool fit_switch = false;
+  GainRule rule;
 };
 
 struct FitResult {
   DimensionlessGains gains;
   double t_switch = 0.5;                // s
   std::vector<double> standard_errors;  // of k, per edge, N/m; 0 where not estimated
-  double condition_number = 0;          // of the scaled regression (Eq. 8)
-  // Of what these values generate, over the measured samples.
+  double condition_number = 0;          // of the scaled regression (Eq. (8))
+  // Of what these values generate against the smoothed track, while it was measured.
   PerFinger<double> rmse = {};  // m
   PerFinger<int> samples = {};
+  double aperture = 0, aperture_time = 0;  // reproduced, m and of T
 };
 
-// k by Eq. 8 (SVD, NNLS), then together with the gains by Levenberg-Marquardt on the simulated
-// trajectory, from several starting gains; the values that reproduce the fingers best are kept.
+// Distance between the thumb and the mean of the other involved tips, m.
+double Aperture(const Fingertips& p_H, const PerFinger<bool>& involved);
+
+// k by Eq. (8) (SVD, NNLS), then together with gamma, delay, closing gain and switch time by
+// Levenberg-Marquardt on the simulated trajectory, from several starting gains; the values that
+// reproduce the fingers best are kept. Contact stiffness and all damping follow the rule.
 FitResult FitSprings(const FitProblem& problem);
 
 }  // namespace springgrasp

@@ -23,7 +23,7 @@ LearnedReach LearnReach(const std::vector<Pose>& X_OG, double dt, int basis_func
 struct HandPath {
   std::vector<Pose> X_OG;            // at even steps from t = 0
   std::vector<double> acceleration;  // |a| of H's origin, m/s^2
-  double t_switch = 0;               // s, largest speed of that origin between 0 and T (Eq. 7)
+  double t_switch = 0;               // s, largest speed of that origin between 0 and T (Eq. (7))
 };
 HandPath RollOutHand(const PoseDmp& dmp, const Pose& X_GH, double T, double dt, int count);
 

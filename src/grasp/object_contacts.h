@@ -44,7 +44,7 @@ ContactRay RayOfContact(const Shape& shape, const Eigen::Vector3d& p_OF);
 // The reverse for any shape; nothing if the ray meets no surface.
 std::optional<Contact> ContactOfRay(const Shape& shape, const ContactRay& ray, double tip_radius);
 
-// Mean distance of the surface from O's origin in the section orthogonal to `normal` (Eq. 6), m.
+// Mean distance of the surface from O's origin in the section orthogonal to `normal` (Eq. (6)), m.
 double MeanSectionRadius(const Shape& shape, const Eigen::Vector3d& normal);
 
 // Rotations R about O's axes that leave the shape as it is; `free_axis` marks a continuum.

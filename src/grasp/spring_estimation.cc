@@ -84,7 +84,7 @@ void Smooth(SpringObservation& o, double noise) {
   }
 }
 
-// --- Eq. 8-9 ---------------------------------------------------------------------------------
+// --- Eq. (8)-(9) ---------------------------------------------------------------------------------
 
 // Whether the rows of finger i use only states that are known in this frame.
 std::vector<bool> UsableFingers(const SpringSystem& system, const RowVectorXd& states) {
@@ -99,7 +99,7 @@ std::vector<bool> UsableFingers(const SpringSystem& system, const RowVectorXd& s
     all_involved = all_involved && (known[i] || !system.involved[i]);
   }
   for (std::size_t i = 1; i < known.size(); ++i) {
-    // Eq. 4 needs every involved finger.
+    // Eq. (4) needs every involved finger.
     if (system.involved[i] && !all_involved) usable[i] = false;
   }
   for (const Spring& spring : system.springs) {

@@ -1,5 +1,5 @@
-// Spring constants from observed fingertips (Eq. 8-9): the paper's regression by singular values,
-// then with k >= 0, then by Levenberg-Marquardt on the simulated trajectory.
+// Spring constants from observed fingertips, Eq. (8) and Eq. (9): the paper's regression by
+// singular values, then with k >= 0, then by Levenberg-Marquardt on the simulated trajectory.
 #pragma once
 
 #include <Eigen/Core>
@@ -54,10 +54,10 @@ struct SpringRegression {
   Eigen::VectorXd singular_values;  // of X as it stands
   double condition_number = 0;      // of X with columns scaled to norm 1
   int rank = 0;
-  double residual = 0;  // RMS of Eq. 8, N
+  double residual = 0;  // RMS of Eq. (8), N
 };
 
-// Rows of Eq. 8-9 of one frame: X (dim N x springs) and the right-hand side
+// Rows of Eq. (8), Eq. (9) of one frame: X (dim N x springs) and the right-hand side
 //   b = -m a - sum d_e xd_e + involved (-kc xc - dc v - f_i u_i) - d0 v,   X k = b.
 void RegressionRows(const SpringSystem& system, const Eigen::Ref<const Eigen::MatrixXd>& p,
                     const Eigen::Ref<const Eigen::MatrixXd>& v,

@@ -30,7 +30,19 @@ bool Reciprocal(const SpringSystem& system, double f) {
   return f < 0 && system.ratio == ForceRatio::kReciprocal;
 }
 
-// Mean of s over the virtual finger relative to the thumb's (Eq. 4); 0 where it does not apply.
+bool Balanced(const SpringSystem& system) { return system.ratio == ForceRatio::kBalanced; }
+
+// R of Eq. (4) before its cap, and its derivative by rho.
+double RatioOf(const SpringSystem& system, double rho, double f) {
+  if (Balanced(system)) return f < 0 ? 1 : rho;
+  return Reciprocal(system, f) ? 1 / (rho * rho) : rho * rho;
+}
+double RatioSlope(const SpringSystem& system, double rho, double f) {
+  if (Balanced(system)) return f < 0 ? 0 : 1;
+  return Reciprocal(system, f) ? -2 / (rho * rho * rho) : 2 * rho;
+}
+
+// Mean of s over the virtual finger relative to the thumb's (Eq. (4)); 0 where it does not apply.
 double DistanceRatio(const SpringSystem& system, const Eigen::VectorXd& s, int& count) {
   count = 0;
   if (!system.involved[0]) return 0;
@@ -89,10 +101,7 @@ void Evaluate(const SpringSystem& system, const Points& p, const Points& v, doub
   int count = 0;
   const double rho = DistanceRatio(system, terms.s, count);
   terms.R = 1;
-  if (count > 0) {
-    const double ratio = Reciprocal(system, f) ? 1 / rho : rho;
-    terms.R = std::min(ratio * ratio, system.r_max);
-  }
+  if (count > 0) terms.R = std::min(RatioOf(system, rho, f), system.r_max);
   for (int i = 0; i < N; ++i) {
     if (system.involved[static_cast<std::size_t>(i)]) {
       const double f_i = i == 0 ? f : terms.R * f;
@@ -178,9 +187,7 @@ void Jacobian(const SpringSystem& system, const Points& p, const Points& v, doub
   const double rho = DistanceRatio(system, terms.s, count);
   // dR/drho: zero where the cap holds or the ratio does not apply.
   double dR_drho = 0;
-  if (count > 0 && terms.R < system.r_max) {
-    dR_drho = Reciprocal(system, f) ? -2 / (rho * rho * rho) : 2 * rho;
-  }
+  if (count > 0 && terms.R < system.r_max) dR_drho = RatioSlope(system, rho, f);
   for (int i = 0; i < N; ++i) {
     const Index a = Dim * i;
     if (system.involved[static_cast<std::size_t>(i)]) {

@@ -1,19 +1,27 @@
-// Virtual springs between fingertips, auxiliary springs to their contacts, and the central force
-// (Eq. 1-6), as one force balance per fingertip. In 2-D and 3-D from the same code.
+// Virtual springs between fingertips, auxiliary springs to their contacts, and the central force,
+// as one force balance per fingertip. In 2-D and 3-D from the same code.
 //
 // Spring e = (i, j), with D = p_i - p_j, V = v_i - v_j, r = sqrt(D.D + eps_s^2):
-//   x_e = D (1 - l / r) (2),  xd_e = D (D.V) / r^2 (1);  force -k x_e - d xd_e on i, the opposite
-//   on j
+//   x_e = D (1 - l / r)                                                       Eq. (2)
+//   force on i: -k x_e - d xd_e, on j the opposite, xd_e = D (D.V) / r^2      Eq. (1)
 // Auxiliary spring of finger i, with y = p_i - c_i, q = sqrt(y.y + eps_c^2):
-//   xc_i = y (1 - L_i / q) (3, 6),  s_i = sqrt(xc_i.xc_i + eps_c^2),  u_i = xc_i / s_i
+//   force -kc xc_i - dc v_i, xc_i = y (1 - L_i / q)                           Eq. (3)
+//   at contact points L = 0; at the object's centre L = mean radius           Eq. (6)
+//   s_i = sqrt(xc_i.xc_i + eps_c^2),  u_i = xc_i / s_i
 // Force ratio over the virtual finger VF = involved fingers but the thumb:
-//   rho = mean of s_i over VF / s_thumb,  R = min(rho^2, r_max) (4);  f_thumb = f, f_i = R f
-// Motion (5):
-//   m_i dv_i/dt = springs + involved_i (-kc xc_i - dc v_i - f_i u_i) - d0 v_i
+//   f_thumb = f, f_i = R f, R = min(rho^2, r_max),
+//   rho = mean of s_i over VF / s_thumb                                       Eq. (4)
+// Motion, with the central force f of Eq. (7) (motion/central_force.h):
+//   m_i dv_i/dt = springs + involved_i (-kc xc_i - dc v_i - f_i u_i) - d0 v_i Eq. (5)
 //
-// where the paper is silent or contradicts itself: soft norms make every term finite and smooth,
+// Where the paper is silent or contradicts itself: soft norms make every term finite and smooth,
 // the dashpot acts along the spring, f < 0 pushes away from the contact. Object and contacts are at
 // rest in the frame that all points are given in.
+//
+// Ratio "balanced" is ours: rho^2 equalises distances before it lets fingers arrive, and hands do
+// not open along contact normals (a finger unfolds across them). There f < 0 pushes every finger
+// towards its place in the opened hand, in proportion to its way there (R = 1), and f > 0 uses R =
+// rho: both make the fingers arrive together, which is what Eq. (4) is for.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,9 +32,9 @@
 
 namespace springgrasp {
 
-enum class SpringDamping { kAxial, kVector, kLiteral };  // D(D.V)/r^2 | V | d/dt of Eq. 2
-enum class ForceRatio { kPaper, kReciprocal };           // rho^2 | 1/rho^2 while f < 0
-enum class OpeningDirection { kSurface, kOutward };      // f < 0 along u | along outward normals
+enum class SpringDamping { kAxial, kVector, kLiteral };    // D(D.V)/r^2 | V | d/dt of Eq. (2)
+enum class ForceRatio { kPaper, kReciprocal, kBalanced };  // rho^2 | 1/rho^2 | 1 while f < 0
+enum class OpeningDirection { kSurface, kOutward };        // f < 0 along u | along outward normals
 
 struct Spring {
   int i = 0, j = 1;  // fingers
@@ -41,9 +49,10 @@ struct SpringSystem {
   std::vector<Spring> springs;
   Eigen::VectorXd mass;         // N, kg
   Eigen::MatrixXd anchors;      // dim x N: contact points, or the object's centre, m
-  Eigen::VectorXd rest_radius;  // N: L, 0 at contact points, mean radius for Eq. 6, m
+  Eigen::VectorXd rest_radius;  // N: L, 0 at contact points, mean radius for Eq. (6), m
   std::vector<bool> involved;   // N: the paper's c(i)
-  // dim x N outward unit normals at the contacts, for kOutward; where L > 0 the radius is used
+  // dim x N directions in which f < 0 pushes, for kOutward: unit normals at the contacts, or
+  // vectors whose lengths share f among the fingers (kBalanced). Where L > 0 the radius is used
   // instead, where a column is zero u_i.
   Eigen::MatrixXd normals;
   double kc = 1, dc = 0.3;            // auxiliary spring N/m and damper N s/m, of every finger
@@ -71,15 +80,15 @@ std::vector<std::pair<int, int>> SpringTopology(std::string_view name);
 
 // Every intermediate quantity of one evaluation.
 struct SpringTerms {
-  Eigen::MatrixXd x, xdot;    // dim x springs: Eq. 2 and Eq. 1, m and m/s
-  Eigen::MatrixXd xc, u;      // dim x N: Eq. 3/6, m; direction of the central force
+  Eigen::MatrixXd x, xdot;    // dim x springs: Eq. (2) and Eq. (1), m and m/s
+  Eigen::MatrixXd xc, u;      // dim x N: Eq. (3), (6), m; direction of the central force
   Eigen::MatrixXd direction;  // dim x N: u, or the outward direction while f < 0
   Eigen::VectorXd s;          // N, m
-  double R = 1;               // Eq. 4
+  double R = 1;               // Eq. (4)
   Eigen::MatrixXd acc;        // dim x N, m/s^2
 };
 
-// Evaluates Eq. 5. `p`, `v` are dim x N, `f` the central force in N. Allocates only on the first
+// Evaluates Eq. (5). `p`, `v` are dim x N, `f` the central force in N. Allocates only on the first
 // use of `terms`.
 void EvaluateSprings(const SpringSystem& system, const Eigen::Ref<const Eigen::MatrixXd>& p,
                      const Eigen::Ref<const Eigen::MatrixXd>& v, double f, SpringTerms& terms);

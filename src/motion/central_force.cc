@@ -80,7 +80,12 @@ double EvaluateCentralForce(const CentralForce& force, double t) {
         Interpolate(force.t, force.a, time);
     if (f > 0) f *= force.beta;
   }
-  return t >= force.T && force.hold > 0 ? std::max(f, force.hold) : f;
+  if (force.hold <= 0) return f;
+  if (t >= force.T) return std::max(f, force.hold);
+  const double closes = force.t_switch + force.delay;
+  if (!force.ramp || t <= closes) return f;
+  const double x = (t - closes) / (force.T - closes);
+  return std::max(f, force.hold * x * x * (3 - 2 * x));
 }
 
 std::vector<double> CentralForceKinks(const CentralForce& force) {

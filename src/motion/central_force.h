@@ -1,4 +1,4 @@
-// The central force that opens and closes the hand, from the acceleration of the reach (Eq. 7):
+// The central force that opens and closes the hand, from the acceleration of the reach (Eq. (7)):
 //
 //   f(t) = -gamma |a(t)| for t < t_switch, +gamma |a(t)| from there on.
 //
@@ -34,13 +34,14 @@ struct CentralForce {
   double delay = 0;       // s, of the whole force
   double beta = 1;        // closing gain: multiplies f > 0
   double hold = 0;        // N; after T the force never falls below it
+  bool ramp = false;      // nor, from the (delayed) switch on, below a ramp that rises to it at T
 };
 
 // First sample of largest speed. `v` has a row per sample.
 double SwitchTime(const Eigen::VectorXd& t, const Eigen::MatrixXd& v);
 
-// Eq. 7 from a movement's velocities and accelerations, gains at their defaults; T is the last time
-// or `T` if given.
+// Eq. (7) from a movement's velocities and accelerations, gains at their defaults; T is the last
+// time or `T` if given.
 CentralForce MakeCentralForce(const MotionSamples& motion, double gamma = 1,
                               std::optional<double> T = {});
 

@@ -49,7 +49,7 @@ void Regress(const MotionSamples& samples, const VectorXd& importance, Dmp& dmp)
     BasisRow(dmp, s, row);
     const double weight = std::sqrt(importance[i]);
     basis.row(i) = weight * row.transpose();
-    // Eq. 10 solved for f(s).
+    // Eq. (10) solved for f(s).
     target.row(i) =
         weight *
         ((dmp.tau * dmp.tau * samples.a.row(i) + dmp.D * dmp.tau * samples.v.row(i)) / dmp.K -
@@ -63,7 +63,7 @@ void Regress(const MotionSamples& samples, const VectorXd& importance, Dmp& dmp)
       scale.cwiseInverse().asDiagonal() * scaled.completeOrthogonalDecomposition().solve(target);
 }
 
-// Right-hand side of Eq. 10 as a physical acceleration.
+// Right-hand side of Eq. (10) as a physical acceleration.
 struct Acceleration {
   const Dmp& dmp;
   double tau2 = dmp.tau * dmp.tau;
@@ -254,10 +254,24 @@ DmpState StartDmp(const Dmp& dmp, const VectorXd& v0) {
   return {dmp.x0, InitialVelocity(dmp, v0), 1.0};
 }
 
-VectorXd DmpAcceleration(const Dmp& dmp, const DmpState& state, const DmpCoupling& coupling) {
-  VectorXd a;
-  Integrator(dmp).At(state.s, state.x, state.v, a);
+namespace {
+
+// Acceleration at a state, into `a`.
+void Couple(Integrator& integrator, const DmpState& state, const DmpCoupling& coupling,
+            VectorXd& a) {
+  integrator.At(state.s, state.x, state.v, a);
   if (coupling.acceleration) a += coupling.acceleration(state.x, state.v);
+  for (const SphereObstacle& obstacle : coupling.obstacles) {
+    AvoidObstacle(obstacle, state.x, state.v, a);
+  }
+}
+
+}  // namespace
+
+VectorXd DmpAcceleration(const Dmp& dmp, const DmpState& state, const DmpCoupling& coupling) {
+  VectorXd a(dmp.dimension());
+  Integrator integrator(dmp);
+  Couple(integrator, state, coupling, a);
   return a;
 }
 
@@ -266,22 +280,31 @@ void StepDmp(const Dmp& dmp, double dt, DmpState& state, const DmpCoupling& coup
   if (coupling.measured && coupling.phase_stopping > 0) {
     h /= 1 + coupling.phase_stopping * (*coupling.measured - state.x).squaredNorm();
   }
-  if (!coupling.acceleration) {
+  if (!coupling.acceleration && coupling.obstacles.empty()) {
     Integrator(dmp).Advance(h, state.s, state.x, state.v);
     return;
   }
   const int count = std::max(1, static_cast<int>(std::ceil(h / (kDmpStep * dmp.tau) - 1e-9)));
   const double step = h / count;
   const double half = std::exp(-0.5 * dmp.alpha * step / dmp.tau);
+  Integrator integrator(dmp);
+  DmpState k1 = state, k2 = state, k3 = state, k4 = state;
+  VectorXd a1(dmp.dimension()), a2 = a1, a3 = a1, a4 = a1;
   for (int i = 0; i < count; ++i) {
-    const DmpState k1 = state;
-    const VectorXd a1 = DmpAcceleration(dmp, k1, coupling);
-    const DmpState k2 = {k1.x + 0.5 * step * k1.v, k1.v + 0.5 * step * a1, k1.s * half};
-    const VectorXd a2 = DmpAcceleration(dmp, k2, coupling);
-    const DmpState k3 = {k1.x + 0.5 * step * k2.v, k1.v + 0.5 * step * a2, k1.s * half};
-    const VectorXd a3 = DmpAcceleration(dmp, k3, coupling);
-    const DmpState k4 = {k1.x + step * k3.v, k1.v + step * a3, k1.s * half * half};
-    const VectorXd a4 = DmpAcceleration(dmp, k4, coupling);
+    k1 = state;
+    Couple(integrator, k1, coupling, a1);
+    k2.x = k1.x + 0.5 * step * k1.v;
+    k2.v = k1.v + 0.5 * step * a1;
+    k2.s = k1.s * half;
+    Couple(integrator, k2, coupling, a2);
+    k3.x = k1.x + 0.5 * step * k2.v;
+    k3.v = k1.v + 0.5 * step * a2;
+    k3.s = k2.s;
+    Couple(integrator, k3, coupling, a3);
+    k4.x = k1.x + step * k3.v;
+    k4.v = k1.v + step * a3;
+    k4.s = k1.s * half * half;
+    Couple(integrator, k4, coupling, a4);
     state.x += step / 6 * (k1.v + 2 * k2.v + 2 * k3.v + k4.v);
     state.v += step / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
     state.s = k4.s;

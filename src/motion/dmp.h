@@ -1,11 +1,12 @@
-// Dynamic movement primitive of the reach (Eq. 10-13), the goal-difference form of the paper:
+// Dynamic movement primitive of the reach, the goal-difference form of the paper:
 //
-//   tau dv/dt = K (g - x) - D v - K (g - x0) s + K f(s)        (10), v = tau dx/dt   (11)
-//   f(s) = s sum_i w_i psi_i(s) / sum_i psi_i(s),  psi_i = exp(-h_i (s - c_i)^2)     (12)
-//   tau ds/dt = -alpha s,  so s = exp(-alpha t / tau)                                (13)
+//   tau dv/dt = K (g - x) - D v - K (g - x0) s + K f(s)                           Eq. (10)
+//   tau dx/dt = v                                                                 Eq. (11)
+//   f(s) = s sum_i w_i psi_i(s) / sum_i psi_i(s),  psi_i = exp(-h_i (s - c_i)^2)  Eq. (12)
+//   tau ds/dt = -alpha s,  so s = exp(-alpha t / tau)                             Eq. (13)
 //
-// The v of Eq. 10 is the scaled velocity; everything below takes and gives physical velocities
-// v / tau and accelerations. The forcing term is found from Eq. 10 (the paper says Eq. 11). The
+// The v of Eq. (10) is the scaled velocity; everything below takes and gives physical velocities
+// v / tau and accelerations. The forcing term is found from Eq. (10) (the paper says Eq. (11)). The
 // primitive does not depend on where or how fast it is used: translation and time scaling are
 // exact, goal and start changes have the closed form DmpGoalResponse. It is not scale invariant:
 // the forcing keeps its size when g - x0 grows.
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "base/pose.h"
+#include "motion/dmp_obstacle.h"
 #include "motion/motion_samples.h"
 
 namespace springgrasp {
@@ -51,7 +53,7 @@ Dmp LearnDmp(const MotionSamples& samples, const DmpOptions& options = {});
 // with the same weight: the plain regression of the paper.
 void LearnDmpWeights(const MotionSamples& samples, Dmp& dmp);
 
-// Eq. 12 at phase s, evaluated with the largest exponent subtracted: finite far from all centres.
+// Eq. (12) at phase s, evaluated with the largest exponent subtracted: finite far from all centres.
 Eigen::VectorXd DmpForcing(const Dmp& dmp, double s);
 
 // Largest step of the integration inside the functions below, as a fraction of tau.
@@ -76,8 +78,10 @@ struct DmpState {
   double s = 1;  // phase
 };
 struct DmpCoupling {
-  // Extra acceleration (an obstacle term, say) at state x, v; none if empty.
+  // Extra acceleration at state x, v; none if empty.
   std::function<Eigen::VectorXd(const Eigen::VectorXd& x, const Eigen::VectorXd& v)> acceleration;
+  // Kept clear of, one after the other: where two clearances overlap the last one rules.
+  std::vector<SphereObstacle> obstacles;
   // Phase stopping: tau ds/dt = -alpha s / (1 + phase_stopping |measured - x|^2), 1/m^2; and the
   // plan waits with the phase.
   double phase_stopping = 0;

@@ -112,6 +112,28 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"power", "cylinder:0.03x0.2"}, Case{"power", "cylinder:0.06x0.15"},
                     Case{"power", "cylinder:0.08x0.2"}));
 
+// Hands open widest at 60 to 75 % of a reach, and hold what they have closed on.
+TEST(GenerateTest, ApertureAndLandingFollowPeopleForEverySizeAndSpeed) {
+  for (const char* type : {"pinch", "power"}) {
+    for (const double width : {0.02, 0.04, 0.06}) {
+      for (const double duration : {0.6, 1.0, 2.0}) {
+        SCOPED_TRACE(fmt::format("{} of {} m in {} s", type, width, duration));
+        GenerateOptions options;
+        options.shape = type == std::string("power")
+                            ? ParseShape(fmt::format("cylinder:{}x0.2", width))
+                            : ParseShape(fmt::format("sphere:{}", width));
+        options.duration = duration;
+        const FingertipMotion motion = GenerateMotion(Learned(type), options);
+        const Course course = CourseOf(motion);
+        EXPECT_GT(course.peak, course.start + 0.005);
+        EXPECT_GT(course.t_peak, 0.60 * duration);
+        EXPECT_LT(course.t_peak, 0.75 * duration);
+        EXPECT_LT(course.error_after_T, 0.001);
+      }
+    }
+  }
+}
+
 TEST(GenerateTest, SlowerMovementFollowsTheSamePath) {
   const Grasp& grasp = Learned("pinch");
   GenerateOptions options;

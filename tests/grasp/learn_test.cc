@@ -35,7 +35,7 @@ TEST(LearnTest, FindsFramesContactsAndDurationOfACleanPinch) {
   EXPECT_NEAR(grasp.rays[kThumb].direction.x(), -1, 0.01);
   EXPECT_NEAR(grasp.rays[kIndex].direction.x(), 1, 0.01);
   EXPECT_LT(grasp.quality.reach_rmse, 0.002);
-  EXPECT_EQ(grasp.switch_rule, "learned");
+  EXPECT_EQ(grasp.switch_rule, "fitted");
   for (const int i : {kThumb, kIndex}) EXPECT_LT(grasp.quality.rmse[i], 0.006) << i;
   for (const GraspEdge& edge : grasp.edges) EXPECT_GE(edge.k, 0);
 }

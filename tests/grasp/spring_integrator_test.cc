@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <new>
@@ -64,6 +65,33 @@ TEST(SpringIntegrator, ErrorFallsWithTheFourthPowerOfTheStep) {
     EXPECT_NEAR(std::log2(coarse / fine), 4, 0.4) << dim;
     EXPECT_NEAR(std::log2(fine / finer), 4, 0.4) << dim;
   }
+}
+
+TEST(SpringIntegrator, OrderIsFourForRandomSystems) {
+  RandomEngine engine = MakeStream(4, 0, "order");
+  std::vector<double> orders;
+  for (int draw = 0; draw < 8; ++draw) {
+    const int dim = draw % 2 ? 3 : 2;
+    SpringSystem system = RandomSystem(engine, dim, dim == 2 ? "fan7" : "brace9");
+    system.ratio = ForceRatio::kBalanced;
+    // Clear of the contacts, whose soft norms need finer steps to show the order.
+    system.involved.assign(5, draw % 4 < 2);
+    const MatrixXd p = GraspStart(dim) + RandomPoints(engine, dim, 5, 0.01);
+    system.anchors = 0.3 * p;
+    const VectorXd times = Eigen::Vector2d(0, 0.3);
+    const auto end = [&](double h) {
+      return IntegrateSprings(system, SineForce(0.02, 0.6), p, MatrixXd::Zero(dim, 5), times,
+                              {.step = h, .tolerance = 1e-15})
+          ->p.row(1)
+          .eval();
+    };
+    const Eigen::RowVectorXd reference = end(2e-4);
+    const double coarse = (end(0.01) - reference).norm(), fine = (end(0.005) - reference).norm();
+    orders.push_back(std::log2(coarse / fine));
+  }
+  std::sort(orders.begin(), orders.end());
+  EXPECT_NEAR(orders[orders.size() / 2], 4, 0.25);
+  EXPECT_GT(orders.front(), 3.4);
 }
 
 TEST(SpringIntegrator, KinksOfTheForceDoNotCostTheOrder) {

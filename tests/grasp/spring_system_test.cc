@@ -29,7 +29,8 @@ std::vector<Variant> Variants() {
   for (const int dim : {2, 3}) {
     for (const auto damping :
          {SpringDamping::kAxial, SpringDamping::kVector, SpringDamping::kLiteral}) {
-      for (const auto ratio : {ForceRatio::kPaper, ForceRatio::kReciprocal}) {
+      for (const auto ratio :
+           {ForceRatio::kPaper, ForceRatio::kReciprocal, ForceRatio::kBalanced}) {
         for (const auto opening : {OpeningDirection::kSurface, OpeningDirection::kOutward}) {
           for (const double radius : {0.0, 0.03}) {
             for (const double f : {-0.05, 0.08}) {

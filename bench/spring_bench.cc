@@ -1,0 +1,123 @@
+// Springs against Boost.Odeint's implicit solver at equal accuracy, and what learning costs.
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+
+#include "grasp/spring_estimation.h"
+#include "grasp/spring_integrator.h"
+#include "grasp/spring_online.h"
+#include "grasp/spring_test_systems.h"
+#include "rosenbrock4.h"
+
+namespace springgrasp {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kAccuracy = 1e-7;  // m
+constexpr int kDim = 3;
+
+// One second of the power grasp of the tests in 3-D.
+struct Case {
+  SpringSystem system = GraspSystem(true, kDim);
+  MatrixXd p0 = GraspStart(kDim), v0 = MatrixXd::Zero(kDim, 5);
+  ForceProfile force = MakeForceProfile(ReachForce(0.04, 0.01));
+  VectorXd times = EvenTimes(1.0, 0.1);
+};
+
+MatrixXd Ours(const Case& c, double step) {
+  SpringIntegration options;
+  options.step = step;
+  return IntegrateSprings(c.system, c.force, c.p0, c.v0, c.times, options)->p;
+}
+
+// By Odeint, in rosenbrock4.cc.
+MatrixXd Rosenbrock(const Case& c, double tolerance) {
+  return IntegrateByRosenbrock4(c.system, c.force, c.p0, c.v0, c.times, tolerance);
+}
+
+template <typename F>
+double Seconds(F&& run) {
+  const auto start = Clock::now();
+  run();
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// Both at the coarsest setting that keeps the accuracy, timed by turns.
+void RatioToRosenbrock4(benchmark::State& state) {
+  const Case c;
+  const MatrixXd truth = Ours(c, 1e-4);
+  const auto error = [&](const MatrixXd& p) { return (p - truth).cwiseAbs().maxCoeff(); };
+  double step = 0.02;
+  while (error(Ours(c, step)) > kAccuracy) step *= 0.9;
+  double tolerance = 1e-3;
+  while (error(Rosenbrock(c, tolerance)) > kAccuracy) tolerance *= 0.7;
+  double ours = 0, rosenbrock = 0;
+  for (auto _ : state) {
+    ours += Seconds([&] { benchmark::DoNotOptimize(Ours(c, step)); });
+    rosenbrock += Seconds([&] { benchmark::DoNotOptimize(Rosenbrock(c, tolerance)); });
+  }
+  const auto n = static_cast<double>(state.iterations());
+  state.counters["ours_ms"] = 1e3 * ours / n;
+  state.counters["rosenbrock4_ms"] = 1e3 * rosenbrock / n;
+  state.counters["ratio"] = rosenbrock / ours;
+  state.counters["our_step_ms"] = 1e3 * step;
+  state.counters["our_error_m"] = error(Ours(c, step));
+  state.counters["rosenbrock4_error_m"] = error(Rosenbrock(c, tolerance));
+}
+BENCHMARK(RatioToRosenbrock4)->Unit(benchmark::kMillisecond)->MinTime(2);
+
+// A 3 s demonstration at 30 Hz with 1 mm noise.
+SpringObservation Demonstration() {
+  const Case c;
+  SpringObservation o;
+  o.system = c.system;
+  o.force = ReachForce(0.04, 0.01);
+  o.t = EvenTimes(3.0, 1.0 / 30);
+  o.p = IntegrateSprings(c.system, c.force, c.p0, c.v0, o.t)->p;
+  RandomEngine engine = MakeStream(1, 0, "spring_bench");
+  for (double& x : o.p.reshaped()) x += 0.001 * Normal(engine);
+  return o;
+}
+
+void SvdEstimation(benchmark::State& state) {
+  const SpringObservation o = Demonstration();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(EstimateSprings({o}, {.trajectory_fit = false}));
+  }
+}
+BENCHMARK(SvdEstimation)->Unit(benchmark::kMillisecond);
+
+void FullRecipe(benchmark::State& state) {
+  const SpringObservation o = Demonstration();
+  EstimationOptions options;
+  options.fit.gamma = options.fit.beta = options.fit.delay = true;
+  options.step = 0.01;
+  for (auto _ : state) benchmark::DoNotOptimize(EstimateSprings({o}, options));
+}
+BENCHMARK(FullRecipe)->Unit(benchmark::kMillisecond);
+
+// One frame in, and all constants solved for.
+void OnlineUpdate(benchmark::State& state) {
+  const SpringObservation o = Demonstration();
+  OnlineEstimation online(o.system);
+  double t = 0;
+  Index i = 0;
+  for (auto _ : state) {
+    const Eigen::RowVectorXd p = o.p.row(i);
+    online.AddFrame(t, Map<const MatrixXd>(p.data(), kDim, 5), 0.0);
+    if (online.regression().rows() > 0) {
+      benchmark::DoNotOptimize(online.regression().Solve());
+    }
+    t += 1.0 / 30;
+    i = (i + 1) % o.t.size();
+  }
+}
+BENCHMARK(OnlineUpdate)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace springgrasp
