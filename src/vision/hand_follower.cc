@@ -87,6 +87,57 @@ const HandFit* HandFollower::Follow(const StereoFrame& frame, const TrackedFrame
   return &*fit_;
 }
 
+std::optional<PerFinger<int>> HandFollower::BetterLabels(const StereoFrame& frame,
+                                                         const FingertipTracker& tracker,
+                                                         TrackedFrame& tracked) {
+  constexpr double kUnfit = 0.005;  // m, of the tips off the fit
+  constexpr int kLong = 2;          // frames
+  constexpr double kFar = 20;       // of the cost
+  constexpr double kFree = 10;      // as much as usual may pose and joints change
+  if (!fit_ || fit_->tips_used < 3 || fit_->tip_rms < kUnfit) {
+    unfit_frames_ = 0;
+    return std::nullopt;
+  }
+  if (++unfit_frames_ < kLong) return std::nullopt;
+  unfit_frames_ = 0;
+  HandPoseOptions free = options_;
+  free.pose_sigma *= kFree;
+  free.turn_sigma *= kFree;
+  free.joint_sigma *= kFree;
+  const HandObservation seen = Observe(frame, tracked, tracker);
+  const auto refit = [&](const PerFinger<int>& order) {
+    HandObservation observation = seen;
+    for (int f = 0; f < kNumFingers; ++f) {
+      observation.tip_W[f] = seen.tip_W[order[f]];
+      observation.confidence[f] = seen.confidence[order[f]];
+    }
+    return UpdateHandFit(model_, cameras_, observation, *fit_, {}, false, free);
+  };
+  PerFinger<int> best = {0, 1, 2, 3, 4};
+  HandFit fit = refit(best);
+  const double rms = fit.tip_rms;
+  double cost = fit.cost - kFar;
+  bool found = false;
+  for (int f = 0; f < kNumFingers; ++f) {
+    for (int g = 0; g < f; ++g) {
+      PerFinger<int> order = {0, 1, 2, 3, 4};
+      std::swap(order[f], order[g]);
+      if (!seen.tip_W[f] && !seen.tip_W[g]) continue;
+      const HandFit other = refit(order);
+      if (other.cost >= cost || other.tip_rms > 0.5 * rms) continue;
+      cost = other.cost;
+      fit = other;
+      best = order;
+      found = true;
+    }
+  }
+  if (!found) return std::nullopt;
+  fit_ = fit;
+  const TrackedFrame as_found = tracked;
+  for (int f = 0; f < kNumFingers; ++f) tracked.fingers[f] = as_found.fingers[best[f]];
+  return best;
+}
+
 HandObservation HandFollower::Observe(const StereoFrame& frame, const TrackedFrame& tracked,
                                       const FingertipTracker& tracker) {
   HandObservation observation;
@@ -94,6 +145,11 @@ HandObservation HandFollower::Observe(const StereoFrame& frame, const TrackedFra
   for (int f = 0; f < kNumFingers; ++f) {
     observation.tip_W[f] = tracked.fingers[f].p_W;
     observation.confidence[f] = tracked.fingers[f].confidence;
+  }
+  // Skin is learned from the left picture.
+  if (!white_balance_[0].has_reference()) {
+    white_balance_[0].SetReference(frame.left);
+    white_balance_[1].SetReference(frame.right, &frame.left);
   }
   for (int v = 0; v < 2; ++v) {
     if (Segment(v, v == 0 ? frame.left : frame.right, tracked, tracker)) {
@@ -146,7 +202,8 @@ bool HandFollower::Segment(int v, const cv::Mat& bgr, const TrackedFrame& tracke
       cv::Rect(0, 0, bgr.cols, bgr.rows);
   if (region.area() < 100) return false;
   const int step = std::max(1, static_cast<int>(std::lround(options_.mask_step * radius)));
-  SegmentHand(bgr, tracker.skin(), tracker.colour(), caps, radius, region, step, masks_[v]);
+  SegmentHand(bgr, white_balance_[v].LevelsOf(bgr), tracker.skin(), tracker.colour(), caps, radius,
+              region, step, masks_[v]);
   return true;
 }
 

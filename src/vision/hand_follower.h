@@ -29,6 +29,12 @@ class HandFollower {
   const HandFit* Follow(const StereoFrame& frame, const TrackedFrame& tracked,
                         const FingertipTracker& tracker, bool fit_scale);
 
+  // After Follow: labels with which the hand fits the frame far better (finger f's cap is the one
+  // that order[f] has), where it has not fitted for some frames. Taken over into fit and `tracked`.
+  std::optional<PerFinger<int>> BetterLabels(const StereoFrame& frame,
+                                             const FingertipTracker& tracker,
+                                             TrackedFrame& tracked);
+
   const HandModel& model() const { return model_; }
 
  private:
@@ -46,6 +52,8 @@ class HandFollower {
   StereoCameras cameras_;
   HandPoseOptions options_;
   std::array<HandMask, 2> masks_;
+  std::array<WhiteBalance, 2> white_balance_;  // since the skin was learned
+  int unfit_frames_ = 0;                       // for how long the hand has not fitted its tips
   std::optional<KnownObject> object_;
   std::optional<HandFit> fit_;
   bool fresh_ = false;  // the fit is of the frame at hand

@@ -98,9 +98,9 @@ Eigen::Vector2d HandMask::ToPixel(const Eigen::Vector2d& entry) const {
   return entry * step + Eigen::Vector2d(region.x, region.y);
 }
 
-void SegmentHand(const cv::Mat& bgr, const SkinModel& skin, const MarkerColour& caps,
-                 const std::vector<Eigen::Vector2d>& cap_px, double cap_radius_px,
-                 const cv::Rect& region, int step, HandMask& hand) {
+void SegmentHand(const cv::Mat& bgr, const LevelTable& levels, const SkinModel& skin,
+                 const MarkerColour& caps, const std::vector<Eigen::Vector2d>& cap_px,
+                 double cap_radius_px, const cv::Rect& region, int step, HandMask& hand) {
   hand.region = region;
   hand.step = step;
   const int rows = (region.height + step - 1) / step, cols = (region.width + step - 1) / step;
@@ -110,7 +110,7 @@ void SegmentHand(const cv::Mat& bgr, const SkinModel& skin, const MarkerColour& 
     std::uint8_t* out = hand.mask.ptr(i);
     for (int j = 0; j < cols; ++j, pixel += 3 * step) {
       const bool cap = caps.likelihood[MarkerColour::Index(pixel)] > 127;
-      out[j] = cap ? 255 : skin.Of(pixel[0], pixel[1], pixel[2]);
+      out[j] = cap ? 255 : skin.Of(levels[0][pixel[0]], levels[1][pixel[1]], levels[2][pixel[2]]);
     }
   }
   // Noise of single pixels is not the hand's outline.

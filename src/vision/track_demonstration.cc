@@ -50,6 +50,11 @@ Demonstration TrackStereo(const FrameSource& source, const StereoCameras& camera
     const HandFit* fit = nullptr;
     if (follower) {
       fit = follower->Follow(*frame, tracked, tracker, t < options.scale_time);
+      if (fit != nullptr && by_hand) {
+        if (const auto order = follower->BetterLabels(*frame, tracker, tracked)) {
+          tracker.Relabel(*order, PalmOf(*fit));
+        }
+      }
       if (fit != nullptr) {
         scale = fit->scale;
         tracker.SetHint(follower->model(), *fit);
