@@ -108,7 +108,7 @@ void FullRecipe(benchmark::State& state) {
   const SpringObservation o = Demonstration();
   EstimationOptions options;
   options.fit.gamma = options.fit.beta = options.fit.delay = true;
-  options.step = 0.01;
+  options.step = 0.02;
   for (auto _ : state) benchmark::DoNotOptimize(EstimateSprings({o}, options));
 }
 BENCHMARK(FullRecipe)->Unit(benchmark::kMillisecond);
