@@ -13,7 +13,9 @@ using Eigen::VectorXd;
 namespace odeint = boost::numeric::odeint;
 namespace ublas = boost::numeric::ublas;
 
-// State (p, v), finger-major.
+// State (p, v, t), p and v finger-major. Time is a state because Odeint's own term for it is only
+// of first order here (measured: halving fixed steps halves the error; in this form it falls 16
+// times).
 class Equations {
  public:
   Equations(const SpringSystem& system, const ForceProfile& force)
@@ -23,36 +25,33 @@ class Equations {
         p_(system.dim, system.num_fingers()),
         v_(p_) {}
 
-  void Slope(const ublas::vector<double>& x, ublas::vector<double>& dxdt, double t) {
+  void Slope(const ublas::vector<double>& x, ublas::vector<double>& dxdt) {
     Load(x);
-    EvaluateSprings(system_, p_, v_, force_.f(t), terms_);
+    EvaluateSprings(system_, p_, v_, force_.f(x[2 * n_]), terms_);
     for (Index i = 0; i < n_; ++i) {
       dxdt[i] = v_.data()[i];
       dxdt[i + n_] = terms_.acc.data()[i];
     }
+    dxdt[2 * n_] = 1;
   }
 
-  void Jacobian(const ublas::vector<double>& x, ublas::matrix<double>& J, double t,
-                ublas::vector<double>& dfdt) {
+  void Jacobian(const ublas::vector<double>& x, ublas::matrix<double>& J) {
     Load(x);
-    const double f = force_.f(t);
+    const double t = x[2 * n_], f = force_.f(t);
     EvaluateSprings(system_, p_, v_, f, terms_);
     SpringJacobian(system_, p_, v_, f, terms_, Jp_, Jv_);
+    before_ = terms_.acc;
+    constexpr double kStep = 1e-6;
+    EvaluateSprings(system_, p_, v_, force_.f(t + kStep), terms_);
+    J.clear();
     for (Index i = 0; i < n_; ++i) {
+      J(i, i + n_) = 1;
       for (Index j = 0; j < n_; ++j) {
-        J(i, j) = 0;
-        J(i, j + n_) = i == j ? 1 : 0;
         J(i + n_, j) = Jp_(i, j);
         J(i + n_, j + n_) = Jv_(i, j);
       }
-    }
-    // By time only the force changes.
-    constexpr double kStep = 1e-6;
-    const MatrixXd before = terms_.acc;
-    EvaluateSprings(system_, p_, v_, force_.f(t + kStep), terms_);
-    for (Index i = 0; i < n_; ++i) {
-      dfdt[i] = 0;
-      dfdt[i + n_] = (terms_.acc.data()[i] - before.data()[i]) / kStep;
+      // By time only the force changes.
+      J(i + n_, 2 * n_) = (terms_.acc.data()[i] - before_.data()[i]) / kStep;
     }
   }
 
@@ -67,7 +66,7 @@ class Equations {
   const SpringSystem& system_;
   const ForceProfile& force_;
   Index n_;
-  MatrixXd p_, v_, Jp_, Jv_;
+  MatrixXd p_, v_, Jp_, Jv_, before_;
   SpringTerms terms_;
 };
 
@@ -78,16 +77,20 @@ MatrixXd IntegrateByRosenbrock4(const SpringSystem& system, const ForceProfile& 
                                 double tolerance) {
   const Index n = system.num_coordinates();
   Equations equations(system, force);
-  const auto slope = [&](const ublas::vector<double>& x, ublas::vector<double>& dxdt, double t) {
-    equations.Slope(x, dxdt, t);
+  const auto slope = [&](const ublas::vector<double>& x, ublas::vector<double>& dxdt, double) {
+    equations.Slope(x, dxdt);
   };
-  const auto jacobian = [&](const ublas::vector<double>& x, ublas::matrix<double>& J, double t,
-                            ublas::vector<double>& dfdt) { equations.Jacobian(x, J, t, dfdt); };
-  ublas::vector<double> x(2 * n);
+  const auto jacobian = [&](const ublas::vector<double>& x, ublas::matrix<double>& J, double,
+                            ublas::vector<double>& dfdt) {
+    equations.Jacobian(x, J);
+    dfdt.clear();
+  };
+  ublas::vector<double> x(2 * n + 1);
   for (Index i = 0; i < n; ++i) {
     x[i] = p0.data()[i];
     x[i + n] = v0.data()[i];
   }
+  x[2 * n] = times[0];
   MatrixXd out(times.size(), n);
   for (Index row = 0; row < times.size(); ++row) {
     double t = row == 0 ? times[0] : times[row - 1];

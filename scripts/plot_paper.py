@@ -94,39 +94,47 @@ def reaches(program, figure, grasp):
         axis.set_xlabel("x (m)")
         axis.set_ylabel("y (m)")
         axis.set_zlabel("z (m)")
+        axis.tick_params(labelsize=7)
+        axis.locator_params(nbins=5)
     return fig
 
 
-def fingers(program, figure, grasp):
-    with open(grasp, encoding="utf-8") as file:
-        learned = yaml.safe_load(file)
-    seen = read_table(os.path.join(ROOT, figure["demonstration"]))
-    observed = tips_in_hand(seen)
-    made_table = generate(program, grasp, figure["runs"][0])
-    made = tips_in_hand(made_table)
-    duration = learned["movement"]["duration"]
-    inside = made_table["t"] <= duration + 1e-9
-    t = seen["t"] - learned["quality"]["begin"]
-    during = (t >= -1e-9) & (t <= duration + 1e-9)
-    fig, axes = plt.subplots(1, 5, figsize=(13, 3.2))
-    for f, (axis, finger) in enumerate(zip(axes, FINGERS)):
-        # The two directions in which the finger moves most.
-        x = observed[during, f]
-        x = x[np.isfinite(x).all(axis=1)]
-        middle = x.mean(axis=0)
-        plane = np.linalg.svd(x - middle)[2][:2]
-        for points, colour, name in ((x, "tab:red", "observed"), (made[inside, f], "tab:green", "reproduced")):
-            flat = 1e3 * (points - middle) @ plane.T
-            axis.plot(*flat.T, color=colour, label=name, marker="." if colour == "tab:red" else None, ms=4, lw=1)
-            axis.plot(*flat[0], "*", color=colour, ms=9)
-            axis.plot(*flat[-1], "s", color=colour, ms=5)
-        axis.set_aspect("equal", adjustable="datalim")
-        rmse = 1e3 * learned["quality"]["rmse"][f]
-        mark = " *" if finger in learned["involved"] else ""
-        axis.set_title(f"{finger}{mark}: {rmse:.1f} mm", fontsize=10)
+def fingers(program, figure, _):
+    names = figure["grasps"]
+    fig, axes = plt.subplots(len(names), 5, figsize=(13, 2.9 * len(names)))
+    for row, name in zip(axes, names):
+        path = os.path.join(ROOT, "models", "grasps", name)
+        with open(path + ".yaml", encoding="utf-8") as file:
+            learned = yaml.safe_load(file)
+        seen = read_table(path + ".csv")
+        run = {"object": "0 0 0 1 0 0 0", "shape": learned["object"]["shape"]}
+        made_table = generate(program, path + ".yaml", run)
+        observed, made = tips_in_hand(seen), tips_in_hand(made_table)
+        duration = learned["movement"]["duration"]
+        inside = made_table["t"] <= duration + 1e-9
+        t = seen["t"] - learned["quality"]["begin"]
+        during = (t >= -1e-9) & (t <= duration + 1e-9)
+        for f, (axis, finger) in enumerate(zip(row, FINGERS)):
+            # The two directions in which the finger moves most.
+            x = observed[during, f]
+            x = x[np.isfinite(x).all(axis=1)]
+            middle = x.mean(axis=0)
+            plane = np.linalg.svd(x - middle)[2][:2]
+            for points, colour, label in ((x, "tab:red", "tracked"), (made[inside, f], "tab:green", "reproduced")):
+                flat = 1e3 * (points - middle) @ plane.T
+                axis.plot(*flat.T, color=colour, label=label, marker="." if label == "tracked" else None, ms=4, lw=1)
+                axis.plot(*flat[0], "*", color=colour, ms=9)
+                axis.plot(*flat[-1], "s", color=colour, ms=5)
+            axis.set_aspect("equal", adjustable="datalim")
+            rmse = 1e3 * learned["quality"]["rmse"][f]
+            mark = " *" if finger in learned["involved"] else ""
+            axis.set_title(f"{name}, {finger}{mark}: {rmse:.1f} mm", fontsize=10)
+            axis.tick_params(labelsize=8)
+            print(f"{name} {finger}{mark}: RMSE {rmse:.1f} mm")
+        row[0].set_ylabel("mm")
+    axes[0, 0].legend(fontsize=7)
+    for axis in axes[-1]:
         axis.set_xlabel("mm")
-        print(f"{finger}{mark}: RMSE {rmse:.1f} mm")
-    axes[0].legend(fontsize=7)
     return fig
 
 
@@ -138,7 +146,7 @@ def main():
     with open(os.path.join(options.folder, "figure.yaml"), encoding="utf-8") as file:
         figure = yaml.safe_load(file)
     draw = {"forces": forces, "reaches": reaches, "fingers": fingers}[figure["kind"]]
-    fig = draw(options.program, figure, os.path.join(ROOT, figure["grasp"]))
+    fig = draw(options.program, figure, os.path.join(ROOT, figure.get("grasp", "")))
     fig.tight_layout()
     fig.savefig(os.path.join(options.folder, "figure.png"), dpi=110)
 

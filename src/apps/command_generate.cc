@@ -6,24 +6,32 @@
 #include "apps/command.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "grasp/blend.h"
 #include "grasp/generate.h"
 
 namespace springgrasp {
 namespace {
 
 struct Options {
-  std::string grasp, object, shape, output, start;
+  std::string grasp, object, shape, output, start, blend;
   double duration = 0;
   double yaw = 0;
+  double part = 0.5;
+  bool centre = false;
 };
 
 int Generate(const Options& options) {
   CheckOutputPath(options.output);
-  const Grasp grasp = ReadGrasp(options.grasp);
+  Grasp grasp = ReadGrasp(options.grasp);
   GenerateOptions generate;
   generate.shape = ParseShape(options.shape);
   generate.X_WO = ParsePose(options.object, "--object");
   generate.yaw = options.yaw;
+  generate.object_centre = options.centre;
+  if (!options.blend.empty()) {
+    grasp = BlendGrasps(grasp, ReadGrasp(options.blend), options.part, generate.shape,
+                        generate.tip_radius);
+  }
   if (!options.start.empty()) generate.X_WG_start = ParsePose(options.start, "--start");
   if (options.duration > 0) generate.duration = options.duration;
   const FingertipMotion motion = GenerateMotion(grasp, generate);
@@ -55,6 +63,14 @@ void AddGenerateCommand(CLI::App& app, int& exit_code) {
                       "demonstrated relative to the object)");
   command->add_option("--yaw", options->yaw, "turns the reach about the object's z, rad")
       ->check(CLI::Range(-6.2832, 6.2832));
+  command->add_flag("--centre", options->centre,
+                    "by the object's centre and mean radius alone (Eq. (6)), without contacts");
+  CLI::Option* blend = command->add_option("--blend", options->blend,
+                                           "a second grasp YAML: a grasp between the two");
+  command->add_option("--part", options->part, "of the way to the second grasp")
+      ->check(CLI::Range(0.0, 1.0))
+      ->needs(blend)
+      ->capture_default_str();
   command->callback([options, &exit_code] { exit_code = Generate(*options); });
 }
 

@@ -48,8 +48,10 @@ void AddLearnCommand(CLI::App& app, int& exit_code) {
       ->add_option("--dim", learn.dim, "springs in the hand plane (2, the paper) or in space (3)")
       ->check(CLI::IsMember({2, 3}))
       ->capture_default_str();
-  command->add_option("--profile", learn.profile, "human, or paper: without our extensions")
-      ->check(CLI::IsMember({"human", "paper"}))
+  command
+      ->add_option("--profile", learn.profile,
+                   "human, paper: without our extensions, unforced: without central force")
+      ->check(CLI::IsMember({"human", "paper", "unforced"}))
       ->capture_default_str();
   command->add_option("--name", learn.name, "of the library entry (default: the type)");
   command

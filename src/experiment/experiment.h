@@ -38,7 +38,8 @@ struct ExperimentCase {
   std::string until = "perform";  // perform | observe: tracked, not learned
   int dim = 3;
   std::string profile = "human";
-  int repetitions = 0;  // 0: the experiment's
+  std::string contacts = "points";  // points | centre (Eq. (6) alone)
+  int repetitions = 0;              // 0: the experiment's
   CaseDemonstration demonstration;
   std::vector<SceneOverride> set;
   // Grid: every combination of the values of each scene key is a condition of its own.

@@ -142,6 +142,7 @@ std::vector<PlannedTrial> ExpandExperiment(const Experiment& e) {
         spec.until = c.until;
         spec.dim = c.dim;
         spec.profile = c.profile;
+        spec.object_centre = c.contacts == "centre";
         spec.criteria = e.criteria;
         spec.substitute = e.substitute;
         spec.seed = e.seed;

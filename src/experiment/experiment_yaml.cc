@@ -55,6 +55,7 @@ ExperimentCase ReadCase(YamlReader& yaml) {
   yaml.Read("repetitions", c.repetitions, {1, 1000000});
   yaml.Read("dim", c.dim, {2, 3});
   yaml.Read("profile", c.profile, {"human", "paper"});
+  yaml.Read("contacts", c.contacts, {"points", "centre"});
   c.demonstration = ReadCaseDemonstration(yaml.Child("demonstration"));
   YamlReader set = yaml.Child("set");
   for (const std::string& key : set.Keys()) c.set.emplace_back(key, set.Text(key));

@@ -136,6 +136,7 @@ TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
   request.table_edge = scene.table.position.y() - scene.table.size.y() / 2;
   request.arm_start = robot.Read(simulation).arm_q;
   request.criteria = options.criteria;
+  request.object_centre = options.object_centre;
   const PlanResult plan = PlanGrasp(body, grasp, request);
   RecordPlan(plan, result);
   if (!plan.plan) {

@@ -16,6 +16,7 @@ struct PerformGraspOptions {
   TrialCriteria criteria;
   RandomEngine actuation{0};   // stream "actuation" of the trial
   bool believe_truth = false;  // the object's true pose, size, mass and friction are known
+  bool object_centre = false;  // Eq. (6) alone, no contact points
   std::string camera;          // of the video; empty: the scene's overview cameras side by side
   std::string video;           // .mp4, if not empty
   std::string trajectory;      // .csv of what the robot did, if not empty

@@ -157,6 +157,7 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
   generate.shape = *request.object.shape;
   generate.tip_radius = body.hand.tip_radius;
   generate.dt = dt;
+  generate.object_centre = request.object_centre;
   const Pose X_WH_start = HandPose(body.arm, request.arm_start);
   // The hand that demonstrated.
   const HumanHand human = ScaledHand(body.human, grasp.hand_length / kMmmHandLength);

@@ -21,6 +21,7 @@ struct PlanRequest {
   ArmVector arm_start = ArmVector::Zero();  // rad
   TrialCriteria criteria;                   // lift and shake are planned too
   double dt = 0.005;                        // s
+  bool object_centre = false;               // Eq. (6) alone, no contact points
 };
 
 struct PlanResult {

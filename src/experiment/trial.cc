@@ -170,6 +170,7 @@ TrialResult RunTrial(const TrialSpec& spec, const TrialOutput& output) {
   PerformGraspOptions perform;
   perform.criteria = spec.criteria;
   perform.actuation = stream("actuation");
+  perform.object_centre = spec.object_centre;
   perform.believe_truth = Substituted(spec, "object_pose");
   perform.video = file(output.video, "grasp.mp4");
   perform.motion = file(output.trajectories, "motion.csv");

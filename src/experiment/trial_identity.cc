@@ -13,6 +13,7 @@ std::string CanonicalText(const TrialSpec& spec) {
       spec.grasp_type, spec.dim, spec.profile, fmt::join(spec.substitute, ","), spec.open_hand,
       spec.seed, spec.repetition);
   // Written only where it is not the default, so that older trials keep their identity.
+  if (spec.object_centre) text += "contacts: centre\n";
   if (spec.until != "perform") text += fmt::format("until: {}\n", spec.until);
   for (const CriterionField& field : kCriterionFields) {
     text += fmt::format("criteria.{}: {}\n", field.name, spec.criteria.*field.member);

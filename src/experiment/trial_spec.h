@@ -22,6 +22,7 @@ struct TrialSpec {
   std::string until = "perform";  // perform | observe: where the trial ends
   int dim = 3;                    // of the springs
   std::string profile = "human";  // human | paper
+  bool object_centre = false;     // Eq. (6) alone: fingers know the object's centre, no contacts
   TrialCriteria criteria;
   std::vector<std::string> substitute;  // stages replaced by truth, sorted
   bool open_hand = false;  // baseline: the demonstration is replaced by a constant open hand

@@ -13,18 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Midway between the thumb's contact and the mean of the others, in O.
-Vector3d MiddleOfContacts(const PerFinger<Contact>& contacts, const PerFinger<bool>& involved) {
-  Vector3d others = Vector3d::Zero();
-  int count = 0;
-  for (int i = kIndex; i < kNumFingers; ++i) {
-    if (!involved[i]) continue;
-    others += contacts[i].p_OC;
-    ++count;
-  }
-  return 0.5 * (contacts[kThumb].p_OC + others / std::max(1, count));
-}
-
 // Turns and scales the position forcing of `reach` as its way from start to goal is turned and
 // scaled against that of `learned`.
 void TurnForcing(const PoseDmp& learned, PoseDmp& reach) {
@@ -39,11 +27,22 @@ void TurnForcing(const PoseDmp& learned, PoseDmp& reach) {
 
 }  // namespace
 
+Vector3d MiddleOfContacts(const PerFinger<Contact>& contacts, const PerFinger<bool>& involved) {
+  Vector3d others = Vector3d::Zero();
+  int count = 0;
+  for (int i = kIndex; i < kNumFingers; ++i) {
+    if (!involved[i]) continue;
+    others += contacts[i].p_OC;
+    ++count;
+  }
+  return 0.5 * (contacts[kThumb].p_OC + others / std::max(1, count));
+}
+
 PerFinger<Contact> ContactsOn(const Grasp& grasp, const Shape& shape, double tip_radius) {
   PerFinger<Contact> contacts;
   for (int i = 0; i < kNumFingers; ++i) {
     if (!grasp.involved[i]) continue;
-    if (const auto hit = ContactOfRay(shape, grasp.rays[i], tip_radius)) {
+    if (const auto hit = ContactOfRay(shape, grasp.rays[i], tip_radius + grasp.clearance[i])) {
       contacts[i] = *hit;
       continue;
     }
@@ -81,8 +80,10 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
   // Contacts on the new surface; G keeps its place among them.
   const PerFinger<Contact> contacts = ContactsOn(grasp, options.shape, options.tip_radius);
   const PerFinger<Contact> learned = ContactsOn(grasp, grasp.shape, grasp.tip_radius);
-  const Vector3d shift =
-      MiddleOfContacts(contacts, grasp.involved) - MiddleOfContacts(learned, grasp.involved);
+  Vector3d shift = Vector3d::Zero();
+  if (!options.object_centre) {
+    shift = MiddleOfContacts(contacts, grasp.involved) - MiddleOfContacts(learned, grasp.involved);
+  }
   Pose X_OG_goal = grasp.X_OH * grasp.X_HG;
   X_OG_goal.translation() += shift;
   Pose X_OG_start = StartPose(grasp.reach);
@@ -103,6 +104,7 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
   run.dim = grasp.dim;
   run.X_HP = grasp.X_HP;
   run.involved = grasp.involved;
+  run.share = grasp.share;
   const Pose X_HO = grasp.X_HG * X_OG_goal.inverse();
   Vector3d moved = Vector3d::Zero();
   int involved = 0;
@@ -118,12 +120,20 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
     run.p_HC[i] = X_HO * contacts[i].p_OC;
     run.n_H[i] = X_HO.linear() * contacts[i].n_O;
     run.p_HF[i] = run.p_HC[i] + grasp.offset[i];
+    if (options.object_centre) {
+      run.p_HF[i] = X_HO * learned[i].p_OC + grasp.offset[i];
+      run.p_HC[i] = X_HO.translation();
+    }
     motion.p_OC[i] = turn * contacts[i].p_OC;
     motion.n_OC[i] = turn * contacts[i].n_O;
     moved += run.p_HC[i];
     ++involved;
   }
   if (involved > 0 && grasp.dim == 2) run.X_HP.translation() = moved / involved;
+  if (options.object_centre) {
+    const Vector3d along = X_OG_goal.translation() - X_OG_start.translation();
+    run.mean_radius = MeanSectionRadius(options.shape, along) + options.tip_radius;
+  }
   for (const GraspEdge& edge : grasp.edges) {
     run.edges.emplace_back(edge.i, edge.j);
     run.rest_lengths.push_back(edge.rest_length);
@@ -146,6 +156,14 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
               "{}: the fingertip springs run away (kc {} N/m, dc {} N s/m, gamma {} kg, T {} s)",
               grasp.name, run.gains.kc, run.gains.dc, run.gains.gamma, T);
 
+  if (options.object_centre) {
+    // The contacts are where the springs came to rest.
+    for (int i = 0; i < kNumFingers; ++i) {
+      if (!grasp.involved[i]) continue;
+      motion.p_OC[i] = motion.X_HO.inverse() * fingers->p_HF.back()[i];
+      motion.n_OC[i] = motion.p_OC[i].normalized();
+    }
+  }
   for (int n = 0; n < count; ++n) {
     const auto k = static_cast<std::size_t>(n);
     FingertipMotionSample sample;

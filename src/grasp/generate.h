@@ -15,6 +15,9 @@ struct GenerateOptions {
   Shape shape;                   // the new object
   Pose X_WO = Pose::Identity();  // its believed pose
   double tip_radius = 0.008;     // m, of the hand that will grasp
+  // Eq. (6) alone: no contact points; the involved fingers are drawn to the mean radius of the
+  // object's section about its centre, from where the demonstrated hand had them.
+  bool object_centre = false;
   // Where the reach starts: G in the world. Absent: as demonstrated relative to the object.
   std::optional<Pose> X_WG_start;
   std::optional<double> duration;  // T, s; absent: as demonstrated
@@ -35,5 +38,9 @@ FingertipMotion GenerateMotion(const Grasp& grasp, const GenerateOptions& option
 // Contacts of the involved fingers on a shape: the learned rays, or where one meets no surface a
 // point at the mean section radius (Eq. (6)).
 PerFinger<Contact> ContactsOn(const Grasp& grasp, const Shape& shape, double tip_radius);
+
+// Midway between the thumb's contact and the mean of the others, in O, m.
+Eigen::Vector3d MiddleOfContacts(const PerFinger<Contact>& contacts,
+                                 const PerFinger<bool>& involved);
 
 }  // namespace springgrasp

@@ -35,12 +35,11 @@ namespace {
 
 // Outward normals (unit), or the preshape in units of its mean length.
 MatrixXd OpeningDirections(const FingerRun& run, const std::vector<int>& fingers) {
-  double length = 0;
-  int count = 0;
+  double length = 0, count = 0;
   for (int i = 0; i < kNumFingers; ++i) {
     if (!run.involved[i]) continue;
-    length += run.opening[i].norm();
-    ++count;
+    length += run.share[i] * run.opening[i].norm();
+    count += run.share[i];
   }
   if (length > 0) return SystemPoints(run, fingers, run.opening, true) * (count / length);
   MatrixXd normals = SystemPoints(run, fingers, run.n_H, true);
@@ -69,8 +68,10 @@ SpringSystem MakeSystem(const FingerRun& run, const std::vector<int>& fingers) {
   system.anchors = SystemPoints(run, fingers, run.p_HC);
   system.normals = OpeningDirections(run, fingers);
   for (int n = 0; n < count; ++n) {
-    system.involved[static_cast<std::size_t>(n)] =
-        run.involved[fingers[static_cast<std::size_t>(n)]];
+    const int finger = fingers[static_cast<std::size_t>(n)];
+    system.involved[static_cast<std::size_t>(n)] = run.involved[finger];
+    system.share[n] = run.share[finger];
+    system.rest_radius[n] = run.mean_radius;
   }
   system.kc = run.gains.kc;
   system.dc = run.gains.dc;
@@ -114,7 +115,8 @@ double HoldingForce(const FingerRun& run) {
     if (!run.involved[i] || !run.involved[j]) continue;
     const Vector3d d = run.p_HC[i] - run.p_HC[j];
     const double r = std::max(d.norm(), 1e-6);
-    const Vector3d force = run.gains.k[e] * (1 - run.rest_lengths[e] / r) * d;
+    const double held = std::min(run.share[i], run.share[j]);
+    const Vector3d force = held * run.gains.k[e] * (1 - run.rest_lengths[e] / r) * d;
     pull[i] -= force;
     pull[j] += force;
   }
@@ -168,14 +170,17 @@ std::optional<FingerMotion> SimulateHeld(const FingerRun& run,
   return motion;
 }
 
-// Largest distance of an involved tip from its contact from T on, m.
+// Largest distance of an involved tip from its contact (Eq. (6): its sphere)
+// from T on, m.
 double ContactError(const FingerRun& run, const FingerMotion& motion, double dt) {
   const auto n =
       std::min(static_cast<std::size_t>(std::lround(run.T / dt)), motion.p_HF.size() - 1);
   double error = 0;
   for (std::size_t k = n; k < motion.p_HF.size(); ++k) {
     for (int i = 0; i < kNumFingers; ++i) {
-      if (run.involved[i]) error = std::max(error, (motion.p_HF[k][i] - run.p_HC[i]).norm());
+      if (!run.involved[i] || run.share[i] < 1) continue;  // who takes part in part may hover
+      const double distance = (motion.p_HF[k][i] - run.p_HC[i]).norm();
+      error = std::max(error, std::abs(distance - run.mean_radius));
     }
   }
   return error;
@@ -186,18 +191,34 @@ double ContactError(const FingerRun& run, const FingerMotion& motion, double dt)
 std::optional<FingerMotion> SimulateFingers(const FingerRun& run,
                                             const std::vector<double>& acceleration, double dt) {
   constexpr double kLanded = 0.001;  // m
-  constexpr int kTries = 16;
+  constexpr int kTries = 16, kHalvings = 6;
+  constexpr double kHarder = 1.5;
   double hold = run.hold ? HoldingForce(run) : 0;
   std::optional<FingerMotion> best;
   double best_error = std::numeric_limits<double>::infinity();
-  // A hand that is slow against its reach is late at the contacts: it is closed harder.
-  for (int n = 0; n < (run.hold ? kTries : 1) && best_error > kLanded; ++n, hold *= 1.5) {
-    auto motion = SimulateHeld(run, acceleration, dt, hold);
-    if (!motion) break;
+  const auto lands = [&](double force) {
+    auto motion = SimulateHeld(run, acceleration, dt, force);
+    if (!motion) return false;
     const double error = ContactError(run, *motion, dt);
-    if (error >= best_error) continue;
-    best_error = error;
-    best = std::move(motion);
+    const bool landed = error <= kLanded;
+    if (landed || error < best_error) {
+      best_error = error;
+      best = std::move(motion);
+    }
+    return landed;
+  };
+  // A hand that is slow against its reach is late at the contacts: it is closed harder, just as
+  // hard as it takes, so that similar movements get similar forces.
+  if (lands(hold) || !run.hold) return best;
+  for (int n = 1; n < kTries; ++n) {
+    double late = hold;
+    hold *= kHarder;
+    if (!lands(hold)) continue;
+    for (int k = 0; k < kHalvings; ++k) {
+      const double middle = std::sqrt(late * hold);
+      (lands(middle) ? hold : late) = middle;
+    }
+    break;
   }
   return best;
 }

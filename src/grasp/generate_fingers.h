@@ -22,7 +22,11 @@ struct FingerRun {
   int dim = 3;                   // 2: springs in the xy-plane of P, 3
   Pose X_HP = Pose::Identity();  // hand plane (dim 2)
   PerFinger<bool> involved = {};
-  Fingertips p_HC, n_H;   // contacts (tip centres) and outward normals in H
+  PerFinger<double> share = {1, 1, 1, 1, 1};  // of c(i); below 1 only between two grasps
+  Fingertips p_HC, n_H;                       // contacts (tip centres) and outward normals in H
+  // Eq. (6): p_HC is the object's centre, and involved fingers are drawn to
+  // this distance from it, m. 0: to p_HC itself (Eq. (3)).
+  double mean_radius = 0;
   Fingertips p_HF, v_HF;  // state at t = 0, m and m/s
   std::vector<std::pair<int, int>> edges;
   std::vector<double> rest_lengths;  // per edge, m

@@ -35,6 +35,7 @@ struct GraspQuality {
   // reproduced.
   double aperture = 0, aperture_time = 0;
   double aperture_reproduced = 0, aperture_time_reproduced = 0;
+  double aperture_rmse = 0;     // over the reach, m
   double condition_number = 0;  // of the scaled regression (Eq. (8))
   double planarity = 0;         // RMS distance of the involved tips from the hand plane, m
   double noise = 0;             // estimated deviation of one fingertip coordinate, m
@@ -42,18 +43,22 @@ struct GraspQuality {
 
 struct Grasp {
   std::string name;
-  std::string type = "pinch";     // pinch | tripod | power | lateral
-  std::string source;             // the demonstration it was learned from
-  std::string profile = "human";  // human | paper: delay and closing gain free, or 0 and 1
-  double hand_length = 0.189;     // m, of the demonstrating hand
-  PerFinger<bool> involved = {};  // the paper's c(i)
+  std::string type = "pinch";  // pinch | tripod | power | lateral
+  std::string source;          // the demonstration it was learned from
+  // human | paper | unforced: delay and closing gain free, or 0 and 1, or f_cen
+  // = 0
+  std::string profile = "human";
+  double hand_length = 0.189;                 // m, of the demonstrating hand
+  PerFinger<bool> involved = {};              // the paper's c(i)
+  PerFinger<double> share = {1, 1, 1, 1, 1};  // of c(i); below 1 only between two grasps (blend.h)
 
-  bool object_given = false;     // else inferred from the grasp
-  Shape shape;                   // the demonstrated object
-  double tip_radius = 0.008;     // m, of the demonstrating fingers
-  PerFinger<ContactRay> rays;    // of the involved fingers
-  Pose X_OH = Pose::Identity();  // hand in O at contact
-  Pose X_HG = Pose::Identity();  // grasp frame in H at contact
+  bool object_given = false;         // else inferred from the grasp
+  Shape shape;                       // the demonstrated object
+  double tip_radius = 0.008;         // m, of the demonstrating fingers
+  PerFinger<ContactRay> rays;        // of the involved fingers
+  PerFinger<double> clearance = {};  // m, of a finger's contact from the surface; see share
+  Pose X_OH = Pose::Identity();      // hand in O at contact
+  Pose X_HG = Pose::Identity();      // grasp frame in H at contact
 
   int dim = 3;                   // 2: the paper's, in the plane below; 3
   Pose X_HP = Pose::Identity();  // hand plane P (dim 2): origin the contact centroid, z normal

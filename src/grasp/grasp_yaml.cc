@@ -1,39 +1,15 @@
 // Grasp YAML: `FormatGrasp` and `ParseGrasp` name the same keys in the same order.
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <cmath>
-#include <iterator>
 
-#include "base/error.h"
 #include "base/files.h"
-#include "base/yaml_reader.h"
 #include "grasp/grasp.h"
+#include "grasp/grasp_yaml_text.h"
 
 namespace springgrasp {
 namespace {
 
 constexpr int kFormat = 1;       // of the file; 1 if it is not given
 constexpr double kAgree = 1e-6;  // relative; derived numbers in the file are checked, not used
-
-std::string List(const double* values, std::size_t count) {
-  std::string out = "[";
-  for (std::size_t i = 0; i < count; ++i) {
-    fmt::format_to(std::back_inserter(out), "{}{:.17g}", i == 0 ? "" : ", ", values[i]);
-  }
-  return out + "]";
-}
-std::string List(const Eigen::Vector3d& v) { return List(v.data(), 3); }
-std::string List(const std::vector<double>& v) { return List(v.data(), v.size()); }
-// A pose goes through a quaternion, whose last digit may turn: with one digit less, what was read
-// is written again as it was.
-std::string List(const Pose& X) {
-  return fmt::format("[{:.15g}]", fmt::join(PoseToArray(X), ", "));
-}
-std::string Column(const Eigen::MatrixXd& m, Eigen::Index column) {
-  const Eigen::VectorXd v = m.col(column);
-  return List(v.data(), static_cast<std::size_t>(v.size()));
-}
 
 // Double-quoted YAML text.
 std::string Quoted(const std::string& text) {
@@ -70,12 +46,6 @@ PerFinger<bool> ReadFingers(YamlReader& yaml, const std::string& key) {
   return marked;
 }
 
-template <typename... Args>
-void ReadRequired(YamlReader& yaml, const std::string& key, Args&&... args) {
-  yaml.Require(key);
-  yaml.Read(key, std::forward<Args>(args)...);
-}
-
 void CheckDerived(YamlReader& yaml, const std::string& key, double derived) {
   if (!yaml.Has(key)) return;
   double value = 0;
@@ -84,60 +54,6 @@ void CheckDerived(YamlReader& yaml, const std::string& key, double derived) {
               "{}: {} is {}, but the springs and the movement above give {}; change them "
               "together, or leave this line out",
               yaml.Where(key), key, value, derived);
-}
-
-constexpr const char* kCoordinates[] = {"x", "y", "z", "wx", "wy", "wz"};
-
-void FormatReach(std::string& out, const PoseDmp& reach) {
-  auto to = std::back_inserter(out);
-  const Dmp& dmp = reach.motion;
-  const Eigen::Quaterniond& R = reach.R_ref;
-  const double R_ref[4] = {R.w(), R.x(), R.y(), R.z()};
-  fmt::format_to(to, "reach:  # DMP of the grasp frame G in O: x y z (m), rotation vector (rad)\n");
-  fmt::format_to(to, "  K: {:.17g}\n  D: {:.17g}\n  alpha: {:.17g}\n  tau: {:.17g}\n", dmp.K, dmp.D,
-                 dmp.alpha, dmp.tau);
-  fmt::format_to(to, "  reference: {}  # orientation R_OG that the rotation vector counts from\n",
-                 List(R_ref, 4));
-  fmt::format_to(to, "  start: {}\n  goal: {}\n", Column(dmp.x0, 0), Column(dmp.g, 0));
-  fmt::format_to(to, "  centers: {}\n  widths: {}\n", Column(dmp.centers, 0),
-                 Column(dmp.widths, 0));
-  for (Eigen::Index c = 0; c < 6; ++c) {
-    fmt::format_to(to, "  weights_{}: {}\n", kCoordinates[c], Column(dmp.weights, c));
-  }
-}
-
-Eigen::VectorXd ReadVector(YamlReader& yaml, const std::string& key, std::size_t size) {
-  std::vector<double> values;
-  ReadRequired(yaml, key, values, Bounds{-1e12, 1e12});
-  ThrowUnless(size == 0 || values.size() == size, "{}: {} has {} numbers, expected {}",
-              yaml.Where(key), key, values.size(), size);
-  return Eigen::VectorXd::Map(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
-void ParseReach(YamlReader yaml, PoseDmp& reach) {
-  Dmp& dmp = reach.motion;
-  ReadRequired(yaml, "K", dmp.K, Bounds{1e-6, 1e9});
-  ReadRequired(yaml, "D", dmp.D, Bounds{0, 1e9});
-  ReadRequired(yaml, "alpha", dmp.alpha, Bounds{1e-6, 1e3});
-  ReadRequired(yaml, "tau", dmp.tau, Bounds{1e-3, 1e3});
-  const Eigen::VectorXd R = ReadVector(yaml, "reference", 4);
-  ThrowUnless(std::abs(R.norm() - 1) < 1e-2, "{}: reference has norm {}, expected 1",
-              yaml.Where("reference"), R.norm());
-  reach.R_ref = Eigen::Quaterniond(R[0], R[1], R[2], R[3]);
-  // Only what a hand has edited is normalised; what the program wrote stays the same to the bit.
-  if (std::abs(R.norm() - 1) > 1e-12) reach.R_ref.normalize();
-  dmp.x0 = ReadVector(yaml, "start", 6);
-  dmp.g = ReadVector(yaml, "goal", 6);
-  dmp.centers = ReadVector(yaml, "centers", 0);
-  const auto bases = static_cast<std::size_t>(dmp.centers.size());
-  ThrowUnless(bases >= 2, "{}: {} centers, expected at least 2", yaml.Where("centers"), bases);
-  dmp.widths = ReadVector(yaml, "widths", bases);
-  ThrowUnless(dmp.widths.minCoeff() > 0, "{}: widths must be positive", yaml.Where("widths"));
-  dmp.weights.resize(dmp.centers.size(), 6);
-  for (Eigen::Index c = 0; c < 6; ++c) {
-    dmp.weights.col(c) = ReadVector(yaml, std::string("weights_") + kCoordinates[c], bases);
-  }
-  yaml.Finish();
 }
 
 void FormatSprings(std::string& out, const Grasp& grasp) {
@@ -230,6 +146,10 @@ void FormatFingers(std::string& out, const Grasp& grasp) {
       fmt::format_to(to, "    contact_height: {:.17g}  # of the object's, -0.5 to 0.5\n",
                      grasp.rays[i].height);
     }
+    if (grasp.involved[i] && grasp.share[i] != 1) {
+      fmt::format_to(to, "    share: {:.17g}  # of c(i), between two grasps\n", grasp.share[i]);
+      fmt::format_to(to, "    clearance: {:.17g}  # of the contact, m\n", grasp.clearance[i]);
+    }
     fmt::format_to(to, "    offset: {}\n", List(grasp.offset[i]));
     fmt::format_to(to, "    velocity: {}\n", List(grasp.velocity[i]));
     if (grasp.involved[i] && !grasp.opening[i].isZero(0)) {
@@ -256,7 +176,11 @@ void ParseFingers(YamlReader& yaml, Grasp& grasp) {
     }
     ReadRequired(item, "offset", grasp.offset[i], Bounds{-2, 2});
     item.Read("velocity", grasp.velocity[i], Bounds{-20, 20});
-    if (grasp.involved[i]) item.Read("opening", grasp.opening[i], Bounds{-2, 2});
+    if (grasp.involved[i]) {
+      item.Read("share", grasp.share[i], Bounds{0, 1});
+      item.Read("clearance", grasp.clearance[i], Bounds{0, 1});
+      item.Read("opening", grasp.opening[i], Bounds{-2, 2});
+    }
     item.Finish();
   }
   for (int i = 0; i < kNumFingers; ++i) {
@@ -277,6 +201,7 @@ void FormatQuality(std::string& out, const GraspQuality& quality) {
                  quality.aperture, quality.aperture_reproduced);
   fmt::format_to(to, "  aperture_time: [{:.17g}, {:.17g}]  # fractions of T\n",
                  quality.aperture_time, quality.aperture_time_reproduced);
+  fmt::format_to(to, "  aperture_rmse: {:.17g}\n", quality.aperture_rmse);
   fmt::format_to(to, "  condition_number: {:.17g}\n", quality.condition_number);
   fmt::format_to(to, "  planarity: {:.17g}\n", quality.planarity);
   fmt::format_to(to, "  noise: {:.17g}\n", quality.noise);
@@ -303,6 +228,7 @@ void ParseQuality(YamlReader yaml, GraspQuality& quality) {
   quality.aperture_reproduced = aperture[1];
   quality.aperture_time = time[0];
   quality.aperture_time_reproduced = time[1];
+  yaml.Read("aperture_rmse", quality.aperture_rmse, Bounds{0, 10});
   yaml.Read("condition_number", quality.condition_number, Bounds{0, 1e300});
   yaml.Read("planarity", quality.planarity, Bounds{0, 1e3});
   yaml.Read("noise", quality.noise, Bounds{0, 1e3});
@@ -350,7 +276,7 @@ Grasp ParseGrasp(const std::string& text, const std::string& name) {
   ReadRequired(yaml, "type", grasp.type,
                std::vector<std::string>{"pinch", "tripod", "power", "lateral"});
   yaml.Read("source", grasp.source);
-  yaml.Read("profile", grasp.profile, {"human", "paper"});
+  yaml.Read("profile", grasp.profile, {"human", "paper", "unforced"});
   yaml.Read("hand_length", grasp.hand_length, Bounds{0.05, 0.5});
   yaml.Read("tip_radius", grasp.tip_radius, Bounds{0, 0.05});
   grasp.involved = ReadFingers(yaml, "involved");

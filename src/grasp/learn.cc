@@ -7,7 +7,9 @@
 #include "base/error.h"
 #include "grasp/generate_fingers.h"
 #include "grasp/grasp_frame.h"
+#include "grasp/learn_complete.h"
 #include "grasp/learn_fit.h"
+#include "grasp/learn_preshape.h"
 #include "grasp/learn_reach.h"
 #include "grasp/learn_segment.h"
 #include "grasp/learn_track.h"
@@ -133,56 +135,6 @@ Fingertips ContactNormals(const Grasp& grasp, const Fingertips& p_HC) {
   return normals;
 }
 
-// Step of the smoothed tips at which the hand is widest, of those where every involved finger that
-// was observed had been measured within 0.06 s: a bridged gap may bulge.
-std::size_t WidestInstant(const FitProblem& fit) {
-  constexpr double kNear = 0.06;  // s
-  const auto measured = [&](double t) {
-    for (int i = 0; i < kNumFingers; ++i) {
-      if (!fit.run.involved[i] || !fit.observed[i]) continue;
-      bool near = false;
-      for (std::size_t k = 0; k < fit.sample_t.size() && !near; ++k) {
-        near = fit.sample_p_HF[k][i] && std::abs(fit.sample_t[k] - t) < kNear;
-      }
-      if (!near) return false;
-    }
-    return true;
-  };
-  std::size_t widest = 0;
-  double aperture = 0;
-  for (std::size_t n = 0; n < fit.p_HF.size(); ++n) {
-    const double now = Aperture(fit.p_HF[n], fit.run.involved);
-    if (now <= aperture || !measured(static_cast<double>(n) * fit.dt)) continue;
-    aperture = now;
-    widest = n;
-  }
-  return widest;
-}
-
-// Where f_cen < 0 must push the involved fingers so that they are at `widest` then, s of T after
-// the start: what the auxiliary springs alone leave of the start is taken off.
-Fingertips Preshape(const FitProblem& fit, double s, const Fingertips& widest) {
-  const double damped = fit.rule.omega_T * fit.rule.zeta;
-  const double split =
-      fit.rule.omega_T * std::sqrt(std::max(1e-6, fit.rule.zeta * fit.rule.zeta - 1));
-  const double left =
-      std::exp(-damped * s) * (std::cosh(split * s) + damped / split * std::sinh(split * s));
-  Fingertips opening;
-  opening.fill(Vector3d::Zero());
-  double mean = 0;
-  for (int i = 0; i < kNumFingers; ++i) {
-    if (!fit.run.involved[i]) continue;
-    opening[i] = widest[i] - fit.run.p_HC[i] - left * (fit.run.p_HF[i] - fit.run.p_HC[i]);
-    mean += opening[i].norm();
-  }
-  // A hand that only closes: the way back to its start.
-  if (mean > 0.01) return opening;
-  for (int i = 0; i < kNumFingers; ++i) {
-    if (fit.run.involved[i]) opening[i] = fit.run.p_HF[i] - fit.run.p_HC[i];
-  }
-  return opening;
-}
-
 // The speed that noise alone leaves in smoothed positions: what a hand at rest seems to move by.
 double SpeedOfNoise(double noise) { return 8 * noise; }  // 1/s: deviation after a 5 Hz low-pass
 
@@ -229,8 +181,9 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   grasp.tip_radius = TipRadius(options);
   grasp.involved = InvolvedFingers(options.type);
   ThrowUnless(options.dim == 2 || options.dim == 3, "dim is {}, expected 2 or 3", options.dim);
-  ThrowUnless(options.profile == "human" || options.profile == "paper",
-              "profile is '{}', expected human or paper", options.profile);
+  ThrowUnless(
+      options.profile == "human" || options.profile == "paper" || options.profile == "unforced",
+      "profile is '{}', expected human, paper or unforced", options.profile);
 
   // The hand's movement, and where in it the reach lies.
   HandTrack track = MakeHandTrack(demonstration);
@@ -250,6 +203,10 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
               "{}: the movement lasts {:.2f} s, too short to learn from", demonstration.source,
               (segment.contact - segment.begin) * track.dt);
 
+  // A hand moves no faster than its reach lets it: what is left is the tracker's.
+  track = MakeHandTrack(demonstration,
+                        kReachBandwidth / ((segment.contact - segment.begin) * track.dt));
+
   // Frames at contact: H (where it was not recorded), G, O.
   const Pose X_HG_nominal = NominalGraspInHand(options);
   if (!track.orientation) {
@@ -258,6 +215,8 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
                                              closing, X_HG_nominal));
   }
   const Fingertips relaxed = RelaxedTips(options);
+  const SeenAtEnds seen = FindSeenAtEnds(track, segment);
+  CompleteFingers(seen, closing, segment, {}, track);
   Fingertips p_HC = TipsAtContact(track, segment.contact);
   PoseUnseenFingers(track.observed, grasp.involved, relaxed, p_HC);
   grasp.X_HG = GraspFrame(p_HC, grasp.involved, Vector3d::Zero());
@@ -278,6 +237,12 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
     grasp.shape = inferred.shape;
   }
   grasp.X_OH = X_WO.inverse() * X_WH;
+  if (object) {
+    const auto hidden = HiddenContacts(seen, grasp, p_HC);
+    CompleteFingers(seen, closing, segment, hidden, track);
+    for (int i = 0; i < kNumFingers; ++i) p_HC[i] = hidden[i].value_or(p_HC[i]);
+    grasp.X_HG = GraspFrame(p_HC, grasp.involved, Vector3d::Zero());
+  }
   for (int i = 0; i < kNumFingers; ++i) {
     if (grasp.involved[i]) grasp.rays[i] = RayOfContact(grasp.shape, grasp.X_OH * p_HC[i]);
   }
@@ -338,6 +303,7 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   }
   fit.run.gains.mass = grasp.mass;
   fit.human = options.profile == "human";
+  fit.forced = options.profile != "unforced";
   fit.rule = RuleOf(fit.human);
   fit.run.ratio = grasp.ratio = fit.human ? "balanced" : "paper";
   fit.run.hold = fit.human;
@@ -358,7 +324,7 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   grasp.quality.aperture = Aperture(fit.p_HF[widest], grasp.involved);
   grasp.quality.aperture_time = static_cast<double>(widest) * track.dt / grasp.scales.T;
   if (fit.human) {
-    grasp.opening = Preshape(fit, grasp.quality.aperture_time, fit.p_HF[widest]);
+    grasp.opening = Preshape(fit, widest);
     fit.run.opening = grasp.opening;
   }
   const FitResult fitted = FitSprings(fit);
@@ -384,6 +350,7 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   grasp.t_switch = fitted.t_switch / grasp.scales.T;
   grasp.quality.begin = track.t0 + segment.begin * track.dt - reach.lead;
   grasp.quality.rmse = fitted.rmse;
+  grasp.quality.aperture_rmse = fitted.aperture_rmse;
   grasp.quality.aperture_reproduced = fitted.aperture;
   grasp.quality.aperture_time_reproduced = fitted.aperture_time;
   grasp.quality.samples = fitted.samples;

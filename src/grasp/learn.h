@@ -14,10 +14,12 @@
 namespace springgrasp {
 
 struct LearnOptions {
-  std::string name;                          // of the library entry; empty: the type
-  std::string type = "pinch";                // pinch | tripod | power | lateral
-  int dim = 3;                               // 2: the paper's plane, 3
-  std::string profile = "human";             // human: delay and closing gain fitted; paper: 0 and 1
+  std::string name;            // of the library entry; empty: the type
+  std::string type = "pinch";  // pinch | tripod | power | lateral
+  int dim = 3;                 // 2: the paper's plane, 3
+  // human: delay and closing gain fitted; paper: 0 and 1; unforced: as paper
+  // with f_cen = 0
+  std::string profile = "human";
   std::optional<DemonstratedObject> object;  // overrides the demonstration's; X_WO in its frame
   double hand_length = 0.189;                // m, scales the relaxed tips and their radius
   double tip_radius = 0.008;                 // m, of the demonstrating fingers at 0.189 m

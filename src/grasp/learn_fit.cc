@@ -15,8 +15,9 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr int kMostRows = 60;       // measured instants used; more are thinned out
+constexpr int kMostRows = 60;        // measured instants used; more are thinned out
 constexpr double kStiffness = 0.03;  // k/kc where nothing was observed, and where the fit starts
+constexpr double kBystander = 0.4;   // weight of a finger that takes no part in the grasp
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // Where a fit starts. `reach` is gamma A / (m times the mean opening).
@@ -26,6 +27,7 @@ struct Start {
 constexpr Start kHumanStarts[] = {
     {40, 0.1, 0.6, 0.55}, {40, 0.02, 0.5, 0.65}, {40, 0.2, 1, 0.45}, {10, 0.2, 3, 0.7}};
 constexpr Start kPaperStarts[] = {{40, 0, 1, 0.5}, {15, 0, 1, 0.5}, {5, 0, 1, 0.5}};
+constexpr Start kUnforcedStarts[] = {{0, 0, 1, 0.5}};
 
 double Between(double a, double b, double fraction) { return (1 - fraction) * a + fraction * b; }
 
@@ -36,6 +38,10 @@ SpringObservation MakeObservation(const FitProblem& problem, const std::vector<i
   SpringObservation out;
   out.system = MakeSystem(run, fingers);
   out.force = MakeRunForce(run, problem.acceleration, problem.dt);
+  out.weight.resize(static_cast<Eigen::Index>(fingers.size()));
+  for (std::size_t n = 0; n < fingers.size(); ++n) {
+    out.weight[static_cast<Eigen::Index>(n)] = run.involved[fingers[n]] ? 1 : kBystander;
+  }
 
   std::vector<double> t;
   std::vector<PerFinger<std::optional<Vector3d>>> p;
@@ -145,17 +151,32 @@ double Reproduce(const FitProblem& problem, const FingerRun& run, FitResult& res
     const double fraction = std::min(1.0, position - static_cast<double>(n));
     return (1 - fraction) * tips[n][i] + fraction * tips[n + 1][i];
   };
+  double aperture_sum = 0;
+  int apertures = 0;
   for (std::size_t n = 0; n < problem.sample_t.size(); ++n) {
+    bool whole = true;
+    Fingertips made, seen;
+    for (int i = 0; i < kNumFingers; ++i) {
+      made[i] = at(motion->p_HF, problem.sample_t[n], i);
+      seen[i] = at(problem.p_HF, problem.sample_t[n], i);
+      whole = whole && (problem.sample_p_HF[n][i] || !run.involved[i] || !problem.observed[i]);
+    }
+    if (whole) {
+      const double error = Aperture(made, run.involved) - Aperture(seen, run.involved);
+      aperture_sum += error * error;
+      ++apertures;
+    }
     for (int i = 0; i < kNumFingers; ++i) {
       if (!problem.sample_p_HF[n][i]) continue;
-      const double t = problem.sample_t[n];
-      const double square = (at(motion->p_HF, t, i) - at(problem.p_HF, t, i)).squaredNorm();
+      const double square = (made[i] - seen[i]).squaredNorm();
       sum[i] += square;
       ++result.samples[i];
-      total += square;
-      ++count;
+      const double weight = run.involved[i] ? 1 : kBystander * kBystander;
+      total += weight * square;
+      count += weight;
     }
   }
+  result.aperture_rmse = std::sqrt(aperture_sum / std::max(1, apertures));
   for (std::size_t n = 0; n < problem.p_HF.size(); ++n) {
     const double aperture = Aperture(motion->p_HF[n], run.involved);
     if (aperture <= result.aperture) continue;
@@ -199,7 +220,7 @@ FitResult FitSprings(const FitProblem& problem) {
   }
   const std::vector<std::size_t> edges = EdgesBetween(problem.run, fingers);
   EstimationOptions options;
-  options.fit.gamma = true;
+  options.fit.gamma = problem.forced;
   options.fit.beta = options.fit.delay = problem.human;
   options.fit.t_switch = problem.fit_switch;
   options.trim = 0.05;
@@ -222,8 +243,9 @@ FitResult FitSprings(const FitProblem& problem) {
   double best_error = std::numeric_limits<double>::infinity();
   const double enough = 0.002 + 0.5 * problem.noise;
   const std::vector<Start> starts =
-      problem.human ? std::vector(std::begin(kHumanStarts), std::end(kHumanStarts))
-                    : std::vector(std::begin(kPaperStarts), std::end(kPaperStarts));
+      problem.human    ? std::vector(std::begin(kHumanStarts), std::end(kHumanStarts))
+      : problem.forced ? std::vector(std::begin(kPaperStarts), std::end(kPaperStarts))
+                       : std::vector(std::begin(kUnforcedStarts), std::end(kUnforcedStarts));
   for (const Start& start : starts) {
     if (best_error < enough) break;
     DimensionlessGains gains;

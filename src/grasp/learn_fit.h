@@ -30,8 +30,9 @@ struct FitProblem {
   std::vector<PerFinger<std::optional<Eigen::Vector3d>>> sample_p_HF;
   double lead = 0;  // s, completed before the recording: the fingers rest
   PerFinger<bool> observed = {};
-  double noise = 0;   // deviation of a measured coordinate, m
-  bool human = true;  // fit delay and closing gain
+  double noise = 0;    // deviation of a measured coordinate, m
+  bool human = true;   // fit delay and closing gain
+  bool forced = true;  // fit the gain of Eq. (7), else f_cen = 0
   bool fit_switch = false;
   GainRule rule;
 };
@@ -45,6 +46,7 @@ struct FitResult {
   PerFinger<double> rmse = {};  // m
   PerFinger<int> samples = {};
   double aperture = 0, aperture_time = 0;  // reproduced, m and of T
+  double aperture_rmse = 0;                // m
 };
 
 // Distance between the thumb and the mean of the other involved tips, m.

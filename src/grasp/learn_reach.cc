@@ -103,7 +103,8 @@ LearnedReach LearnReach(const std::vector<Pose>& X_OG, double dt, int basis_func
   const Eigen::Quaterniond R_goal(X_OG.back().linear());
   const auto count = static_cast<Eigen::Index>(X_OG.size());
   const VectorXd t = VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1) * dt);
-  MotionSamples measured = DifferentiateSamples(t, PoseCoordinates(X_OG, R_goal));
+  const double cutoff = kReachBandwidth / t[count - 1];
+  MotionSamples measured = SmoothSamples(t, PoseCoordinates(X_OG, R_goal), cutoff, t);
   CalmEnds(measured, dt);
   const CompletedMotion completed = Complete(measured, dt);
 

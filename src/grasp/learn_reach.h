@@ -8,6 +8,10 @@
 
 namespace springgrasp {
 
+// Hz times the duration: what is faster in a reach is no reach. Eq. (7) takes its acceleration for
+// the force on the fingers, and of that a tracker's faults would be the larger part.
+inline constexpr double kReachBandwidth = 3.5;
+
 struct LearnedReach {
   PoseDmp dmp;
   double T = 1;               // s

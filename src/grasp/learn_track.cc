@@ -70,8 +70,8 @@ double Noise(const Signal& signal) { return EstimateNoise(Times(signal), Rows(si
 
 // Smoothed by its noise and rate at even times.
 std::vector<Vector3d> Smooth(const Signal& signal, double noise, double period,
-                             const VectorXd& times) {
-  const double cutoff = ChooseCutoff(noise, 1 / period);
+                             const VectorXd& times, double most_cutoff = 1e3) {
+  const double cutoff = std::min(most_cutoff, ChooseCutoff(noise, 1 / period));
   const MotionSamples smooth = SmoothSamples(Times(signal), Rows(signal), cutoff, times);
   std::vector<Vector3d> out;
   for (Eigen::Index n = 0; n < smooth.x.rows(); ++n) out.push_back(smooth.x.row(n).transpose());
@@ -81,7 +81,7 @@ std::vector<Vector3d> Smooth(const Signal& signal, double noise, double period,
 // The orientation of the hand: smoothed as rotation vectors about a middle one, which is safe as
 // long as the hand turns by less than 180 degrees from it.
 std::vector<Quaterniond> SmoothRotation(const Demonstration& demonstration, double period,
-                                        const VectorXd& times) {
+                                        const VectorXd& times, double most_cutoff) {
   // A rotation moves the tips, 0.15 m away: its noise in metres there chooses the smoothing.
   constexpr double kLever = 0.15;
   std::vector<Quaterniond> R;
@@ -98,7 +98,7 @@ std::vector<Quaterniond> SmoothRotation(const Demonstration& demonstration, doub
   const double noise = Noise(signal);
   signal = WithoutOutliers(signal, noise);
   std::vector<Quaterniond> out;
-  for (const Vector3d& x : Smooth(signal, noise, period, times)) {
+  for (const Vector3d& x : Smooth(signal, noise, period, times, most_cutoff)) {
     out.push_back(middle * ExpRotation(x / kLever));
   }
   return out;
@@ -124,7 +124,7 @@ Pose Between(const std::vector<Pose>& X, double position) {
 
 }  // namespace
 
-HandTrack MakeHandTrack(const Demonstration& demonstration) {
+HandTrack MakeHandTrack(const Demonstration& demonstration, double most_hand_cutoff) {
   HandTrack track;
   Signal wrist, midpoint;
   PerFinger<Signal> tips;
@@ -178,9 +178,9 @@ HandTrack MakeHandTrack(const Demonstration& demonstration) {
   Signal hand = track.wrist ? wrist : midpoint;
   track.hand_noise = Noise(hand);
   hand = WithoutOutliers(hand, track.hand_noise);
-  const auto p_WH = Smooth(hand, track.hand_noise, period, times);
+  const auto p_WH = Smooth(hand, track.hand_noise, period, times, most_hand_cutoff);
   std::vector<Quaterniond> R_WH(p_WH.size(), Quaterniond::Identity());
-  if (track.orientation) R_WH = SmoothRotation(demonstration, period, times);
+  if (track.orientation) R_WH = SmoothRotation(demonstration, period, times, most_hand_cutoff);
   for (std::size_t n = 0; n < p_WH.size(); ++n) track.X_WH.push_back(MakePose(p_WH[n], R_WH[n]));
 
   // The fingertips from the hand, each seen sample by the hand's smoothed pose at that time; gaps

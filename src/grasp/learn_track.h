@@ -28,9 +28,10 @@ struct HandTrack {
   int size() const { return static_cast<int>(X_WH.size()); }
 };
 
-// Smoothed by the measured noise and rate. Throws Error if too little was seen: neither a wrist
-// nor thumb and index finger, or no thumb, or no finger beside it.
-HandTrack MakeHandTrack(const Demonstration& demonstration);
+// Smoothed by the measured noise and rate, the hand at `most_hand_cutoff` (Hz) at most. Throws
+// Error if too little was seen: neither a wrist nor thumb and index finger, or no thumb, or no
+// finger beside it.
+HandTrack MakeHandTrack(const Demonstration& demonstration, double most_hand_cutoff = 1e3);
 
 // The same hand with another frame H' fixed to it: X_WH' = X_WH X_HH', tips moved along.
 HandTrack WithHandFrame(const HandTrack& track, const Pose& X_HHnew);

@@ -301,7 +301,7 @@ SpringEstimate EstimateSprings(const std::vector<SpringObservation>& given,
                          : std::sqrt(r.head(fit.num_measured()).squaredNorm() / freedom);
     Uncertainty(J, estimate.noise, fit.num_springs(), estimate);
   }
-  for (std::size_t i = 0; i < observations.size(); ++i) {
+  for (std::size_t i = 0; options.reproduce && i < observations.size(); ++i) {
     auto trajectory = fit.Simulate(x, i, nullptr);
     if (!trajectory) {
       estimate.converged = false;

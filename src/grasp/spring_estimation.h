@@ -23,6 +23,7 @@ struct SpringObservation {
   // Smoothed states for the regression, same size; rows with a NaN in a finger are left out for
   // that finger and the fingers its springs lead to. If p_smooth is empty p is used.
   Eigen::MatrixXd p_smooth, v, a;
+  Eigen::VectorXd weight;  // N: of a finger's errors in the trajectory fit; empty: 1
 };
 
 // What the trajectory fit may change besides k and the start.
@@ -43,6 +44,7 @@ struct EstimationOptions {
   double noise = 0;       // m, deviation of a coordinate of p; 0: from the residuals
   double step = 0.005;    // s, largest integration step of the fit
   int max_iterations = 40;
+  bool reproduce = true;  // simulate what was found: finger_rmse, reproduced
   // A weak pull of log gains to their start (deviation of the factor's logarithm), 0: none.
   double gain_prior = 0;
 };

@@ -39,6 +39,7 @@ SpringStepper::SpringStepper(const SpringSystem& system, const SpringIntegration
   Jv_.setZero(n, n);
   newton_.setIdentity(2 * n, 2 * n);
   residual_.setZero(2 * n);
+  slope_.setZero(n);
   change_.setZero(2 * n);
   lu_ = Eigen::PartialPivLU<MatrixXd>(newton_);
   EvaluateSprings(system_, stages_.p[0], stages_.v[0], 0, terms_);
@@ -57,8 +58,16 @@ bool SpringStepper::TryStep(const ForceProfile& force, double t, double h, const
       if (i == j) block.diagonal().array() += 1;
     }
     stages_.f[i] = force.f(t + kGaussC[i] * h);
-    stages_.a[i] = Flat(terms_.acc);
   }
+  // Newton starts from the line through the stages of the step before, where this one follows it.
+  if (follows_ && stages_.h == h && std::abs(stages_.t + h - t) < 1e-9 * h) {
+    slope_ = (stages_.a[1] - stages_.a[0]) / (kGaussC[1] - kGaussC[0]);
+    stages_.a[0] += slope_;
+    stages_.a[1] += slope_;
+  } else {
+    for (VectorXd& a : stages_.a) a = Flat(terms_.acc);
+  }
+  follows_ = false;
   lu_.compute(newton_);
   stages_.t = t;
   stages_.h = h;
@@ -80,7 +89,10 @@ bool SpringStepper::TryStep(const ForceProfile& force, double t, double h, const
     stages_.a[1] += change_.tail(n);
     const double change = h * change_.cwiseAbs().maxCoeff();
     if (!std::isfinite(change)) return false;
-    if (change < options_.tolerance * size) return true;
+    if (change < options_.tolerance * size) {
+      follows_ = true;
+      return true;
+    }
   }
   return false;
 }

@@ -71,7 +71,8 @@ class SpringStepper {
   SpringTerms terms_;
   Stages stages_;
   Eigen::MatrixXd Jp_, Jv_, newton_;
-  Eigen::VectorXd residual_, change_;
+  Eigen::VectorXd residual_, change_, slope_;
+  bool follows_ = false;  // stages_ are those of an accepted step
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
 };
 

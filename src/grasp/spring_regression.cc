@@ -1,5 +1,6 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -24,7 +25,8 @@ void RegressionRows(const SpringSystem& system, const Eigen::Ref<const MatrixXd>
     row = -system.mass[i] * a.col(i) - system.d0 * v.col(i);
     if (!system.involved[static_cast<std::size_t>(i)]) continue;
     const double f_i = i == 0 ? f : terms.R * f;
-    row -= system.kc * terms.xc.col(i) + system.dc * v.col(i) + f_i * terms.direction.col(i);
+    row -= system.share[i] *
+           (system.kc * terms.xc.col(i) + system.dc * v.col(i) + f_i * terms.direction.col(i));
   }
   for (std::size_t e = 0; e < system.springs.size(); ++e) {
     const Spring& spring = system.springs[e];
@@ -36,19 +38,40 @@ void RegressionRows(const SpringSystem& system, const Eigen::Ref<const MatrixXd>
   }
 }
 
+namespace {
+
+// R and Q'b of [X b] = Q R: all that least squares need, in n + 1 rows.
+struct Triangle {
+  MatrixXd R;
+  VectorXd Qb;
+};
+Triangle Triangulate(const MatrixXd& X, const VectorXd& b) {
+  const Index n = X.cols();
+  MatrixXd both(X.rows(), n + 1);
+  both << X, b;
+  const Eigen::HouseholderQR<MatrixXd> qr(both);
+  const MatrixXd upper =
+      qr.matrixQR().topRows(std::min<Index>(n + 1, X.rows())).triangularView<Eigen::Upper>();
+  return {upper.leftCols(n), upper.col(n)};
+}
+
+}  // namespace
+
 SpringRegression SolveRegression(const MatrixXd& X, const VectorXd& b, double rcond) {
   ThrowUnless(X.rows() >= X.cols() && X.cols() > 0 && X.rows() == b.size(),
               "spring regression: {} rows for {} constants", X.rows(), X.cols());
   ThrowUnless(X.allFinite() && b.allFinite(), "spring regression: a row is not finite");
   const Index n = X.cols();
   SpringRegression out;
-  out.singular_values = Eigen::JacobiSVD<MatrixXd>(X).singularValues();
+  // Singular values and V of X are those of R.
+  const auto [R, Qb] = Triangulate(X, b);
+  out.singular_values = Eigen::JacobiSVD<MatrixXd>(R).singularValues();
   VectorXd scale = X.colwise().norm();
   const double largest = scale.maxCoeff();
   // A spring at its rest length throughout leaves an empty column.
   for (double& value : scale) value = value > 1e-12 * largest && value > 0 ? value : HUGE_VAL;
   const VectorXd inverse_scale = scale.cwiseInverse();
-  const Eigen::JacobiSVD<MatrixXd> svd(X * inverse_scale.asDiagonal(),
+  const Eigen::JacobiSVD<MatrixXd> svd(R * inverse_scale.asDiagonal(),
                                        Eigen::ComputeThinU | Eigen::ComputeThinV);
   const VectorXd& sigma = svd.singularValues();
   VectorXd inverse = VectorXd::Zero(n);
@@ -58,7 +81,7 @@ SpringRegression SolveRegression(const MatrixXd& X, const VectorXd& b, double rc
     out.rank = static_cast<int>(i) + 1;
   }
   const MatrixXd half = inverse_scale.asDiagonal() * svd.matrixV() * inverse.asDiagonal();
-  out.k = half * (svd.matrixU().transpose() * b);
+  out.k = half * (svd.matrixU().transpose() * Qb);
   out.condition_number =
       out.rank == n ? sigma[0] / sigma[n - 1] : std::numeric_limits<double>::infinity();
   const double sum = (X * out.k - b).squaredNorm();
@@ -74,7 +97,8 @@ SpringRegression SolveRegression(const MatrixXd& X, const VectorXd& b, double rc
   return out;
 }
 
-VectorXd SolveNonNegative(const MatrixXd& X, const VectorXd& b) {
+VectorXd SolveNonNegative(const MatrixXd& rows, const VectorXd& right) {
+  const auto [X, b] = Triangulate(rows, right);
   const Index n = X.cols();
   VectorXd scale = X.colwise().norm();
   for (double& value : scale) value = value > 0 ? value : 1;

@@ -140,12 +140,14 @@ class Sensitivities {
       for (int i = 0; i < system_.num_fingers(); ++i) {
         if (!system_.involved[static_cast<std::size_t>(i)]) continue;
         auto rows_i = column.segment(dim * i, dim);
+        const double share = system_.share[i];
         if (gain == SpringGain::kContact) {
-          rows_i -= system_.kc * terms_.xc.col(i) / system_.mass[i];
+          rows_i -= (share * system_.kc / system_.mass[i]) * terms_.xc.col(i);
         } else if (gain == SpringGain::kContactDamping) {
-          rows_i -= system_.dc * stages.v[stage].col(i) / system_.mass[i];
+          rows_i -= (share * system_.dc / system_.mass[i]) * stages.v[stage].col(i);
         } else {
-          rows_i -= ((i == 0 ? 1 : terms_.R) * df / system_.mass[i]) * terms_.direction.col(i);
+          rows_i -=
+              (share * (i == 0 ? 1 : terms_.R) * df / system_.mass[i]) * terms_.direction.col(i);
         }
       }
     }

@@ -43,14 +43,14 @@ double RatioSlope(const SpringSystem& system, double rho, double f) {
 }
 
 // Mean of s over the virtual finger relative to the thumb's (Eq. (4)); 0 where it does not apply.
-double DistanceRatio(const SpringSystem& system, const Eigen::VectorXd& s, int& count) {
+double DistanceRatio(const SpringSystem& system, const Eigen::VectorXd& s, double& count) {
   count = 0;
   if (!system.involved[0]) return 0;
   double sum = 0;
   for (int i = 1; i < system.num_fingers(); ++i) {
     if (!InVirtualFinger(system, i)) continue;
-    sum += s[i];
-    ++count;
+    sum += system.share[i] * s[i];
+    count += system.share[i];
   }
   return count == 0 ? 0 : sum / (count * s[0]);
 }
@@ -98,15 +98,15 @@ void Evaluate(const SpringSystem& system, const Points& p, const Points& v, doub
       terms.direction.col(i) = system.normals.col(i);
     }
   }
-  int count = 0;
+  double count = 0;
   const double rho = DistanceRatio(system, terms.s, count);
   terms.R = 1;
   if (count > 0) terms.R = std::min(RatioOf(system, rho, f), system.r_max);
   for (int i = 0; i < N; ++i) {
     if (system.involved[static_cast<std::size_t>(i)]) {
       const double f_i = i == 0 ? f : terms.R * f;
-      terms.acc.col(i) -=
-          system.kc * terms.xc.col(i) + system.dc * v.col(i) + f_i * terms.direction.col(i);
+      terms.acc.col(i) -= system.share[i] * (system.kc * terms.xc.col(i) + system.dc * v.col(i) +
+                                             f_i * terms.direction.col(i));
     }
     if (system.d0 != 0) terms.acc.col(i) -= system.d0 * v.col(i);
     terms.acc.col(i) /= system.mass[i];
@@ -183,7 +183,7 @@ void Jacobian(const SpringSystem& system, const Points& p, const Points& v, doub
   Jv.setZero();
   AddSpringDerivatives<Dim>(system, p, v, Jp, Jv);
   const Mat<Dim> I = Mat<Dim>::Identity();
-  int count = 0;
+  double count = 0;
   const double rho = DistanceRatio(system, terms.s, count);
   // dR/drho: zero where the cap holds or the ratio does not apply.
   double dR_drho = 0;
@@ -192,23 +192,25 @@ void Jacobian(const SpringSystem& system, const Points& p, const Points& v, doub
     const Index a = Dim * i;
     if (system.involved[static_cast<std::size_t>(i)]) {
       const double f_i = i == 0 ? f : terms.R * f;
-      Jp.template block<Dim, Dim>(a, a) -= system.kc * ContactDerivative<Dim>(system, p, i) +
-                                           f_i * DirectionDerivative<Dim>(system, p, terms, i, f);
-      Jv.template block<Dim, Dim>(a, a) -= system.dc * I;
+      Jp.template block<Dim, Dim>(a, a) -=
+          system.share[i] * (system.kc * ContactDerivative<Dim>(system, p, i) +
+                             f_i * DirectionDerivative<Dim>(system, p, terms, i, f));
+      Jv.template block<Dim, Dim>(a, a) -= system.share[i] * system.dc * I;
     }
     Jv.template block<Dim, Dim>(a, a) -= system.d0 * I;
   }
   if (dR_drho != 0 && f != 0) {
     for (int j = 0; j < N; ++j) {
       if (!system.involved[static_cast<std::size_t>(j)]) continue;
-      const double drho_ds = j == 0 ? -rho / terms.s[0] : 1 / (count * terms.s[0]);
+      const double drho_ds = j == 0 ? -rho / terms.s[0] : system.share[j] / (count * terms.s[0]);
       const Vec<Dim> u_j = terms.u.col(j);
       const Vec<Dim> dR_dp =
           (dR_drho * drho_ds) * (ContactDerivative<Dim>(system, p, j).transpose() * u_j);
       for (int i = 1; i < N; ++i) {
         if (!InVirtualFinger(system, i)) continue;
         const Vec<Dim> direction = terms.direction.col(i);
-        Jp.template block<Dim, Dim>(Dim * i, Dim * j) -= f * direction * dR_dp.transpose();
+        Jp.template block<Dim, Dim>(Dim * i, Dim * j) -=
+            (system.share[i] * f) * direction * dR_dp.transpose();
       }
     }
   }
@@ -228,6 +230,7 @@ SpringSystem MakeSpringSystem(int num_fingers, int dim, double mass) {
   system.normals = MatrixXd::Zero(dim, num_fingers);
   system.rest_radius = Eigen::VectorXd::Zero(num_fingers);
   system.involved.assign(static_cast<std::size_t>(num_fingers), false);
+  system.share = Eigen::VectorXd::Ones(num_fingers);
   return system;
 }
 
@@ -237,8 +240,10 @@ void CheckSpringSystem(const SpringSystem& system) {
               system.dim);
   ThrowUnless(N >= 1 && system.anchors.rows() == system.dim && system.anchors.cols() == N &&
                   system.normals.rows() == system.dim && system.normals.cols() == N &&
-                  system.rest_radius.size() == N && static_cast<int>(system.involved.size()) == N,
-              "spring system: anchors, normals, radii and involved do not fit {} fingers in {}-D",
+                  system.rest_radius.size() == N && static_cast<int>(system.involved.size()) == N &&
+                  system.share.size() == N,
+              "spring system: anchors, normals, radii, involved and share do not fit "
+              "{} fingers in {}-D",
               N, system.dim);
   ThrowUnless(system.mass.minCoeff() > 0 && system.mass.allFinite(),
               "spring system: every mass must be positive");
@@ -310,7 +315,7 @@ double SpringEnergy(const SpringSystem& system, const Eigen::Ref<const MatrixXd>
     const double q =
         std::sqrt((p.col(i) - system.anchors.col(i)).squaredNorm() + system.eps_c * system.eps_c);
     const double stretch = q - system.rest_radius[i];
-    energy += 0.5 * system.kc * stretch * stretch;
+    energy += 0.5 * system.share[i] * system.kc * stretch * stretch;
   }
   return energy;
 }

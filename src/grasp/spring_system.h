@@ -51,6 +51,9 @@ struct SpringSystem {
   Eigen::MatrixXd anchors;      // dim x N: contact points, or the object's centre, m
   Eigen::VectorXd rest_radius;  // N: L, 0 at contact points, mean radius for Eq. (6), m
   std::vector<bool> involved;   // N: the paper's c(i)
+  // N, 0 to 1: how much of its auxiliary spring and central force an involved finger has; 1 but
+  // between two grasps (grasp/blend.h), where c(i) runs from 0 to 1.
+  Eigen::VectorXd share;
   // dim x N directions in which f < 0 pushes, for kOutward: unit normals at the contacts, or
   // vectors whose lengths share f among the fingers (kBalanced). Where L > 0 the radius is used
   // instead, where a column is zero u_i.

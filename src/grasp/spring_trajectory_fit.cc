@@ -172,15 +172,19 @@ void TrajectoryFit::Evaluate(const VectorXd& x, VectorXd& r, MatrixXd* J) const 
   for (std::size_t i = 0; i < observations_.size(); ++i) {
     const SpringObservation& o = observations_[i];
     const auto simulated = Simulate(x, i, J == nullptr ? nullptr : &dp);
+    const auto weight = [&](Index c) {
+      return o.weight.size() > 0 ? o.weight[c / o.system.dim] : 1.0;
+    };
     for (Index k = 0; k < o.t.size(); ++k) {
       for (Index c = 0; c < n_; ++c) {
         if (!std::isfinite(o.p(k, c))) continue;
         if (simulated) {
-          r[row] = simulated->p(k, c) - o.p(k, c);
+          r[row] = weight(c) * (simulated->p(k, c) - o.p(k, c));
           if (J != nullptr) {
-            J->row(row).head(E_ + G_) = dp.row(k * n_ + c).head(E_ + G_);
+            J->row(row).head(E_ + G_) = weight(c) * dp.row(k * n_ + c).head(E_ + G_);
             if (options_.fit_start) {
-              J->row(row).segment(StartIndex(i), 2 * n_) = dp.row(k * n_ + c).tail(2 * n_);
+              J->row(row).segment(StartIndex(i), 2 * n_) =
+                  weight(c) * dp.row(k * n_ + c).tail(2 * n_);
             }
           }
         }

@@ -32,10 +32,16 @@ void CheckSamples(const MotionSamples& samples) {
 
 // s psi_i(s) / sum psi(s) of all bases, into `row`.
 void BasisRow(const Dmp& dmp, double s, VectorXd& row) {
+  constexpr double kNothing = -40;  // exp of it does not change a sum of which 1 is a part
   row = (-dmp.widths.array() * (s - dmp.centers.array()).square()).matrix();
-  row.array() -= row.maxCoeff();
-  row = row.array().exp();
-  row *= s / row.sum();
+  const double largest = row.maxCoeff();
+  double sum = 0;
+  for (double& value : row) {
+    value -= largest;
+    value = value < kNothing ? 0 : std::exp(value);
+    sum += value;
+  }
+  row *= s / sum;
 }
 
 // Least squares for the weights, each sample counted by `importance`.

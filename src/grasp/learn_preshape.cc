@@ -1,0 +1,89 @@
+#include "grasp/learn_preshape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace springgrasp {
+
+using Eigen::Vector3d;
+
+std::size_t WidestInstant(const FitProblem& fit) {
+  constexpr double kNear = 0.06;  // s
+  const auto measured = [&](double t) {
+    for (int i = 0; i < kNumFingers; ++i) {
+      if (!fit.run.involved[i] || !fit.observed[i]) continue;
+      bool near = false;
+      for (std::size_t k = 0; k < fit.sample_t.size() && !near; ++k) {
+        near = fit.sample_p_HF[k][i] && std::abs(fit.sample_t[k] - t) < kNear;
+      }
+      if (!near) return false;
+    }
+    return true;
+  };
+  std::size_t widest = 0;
+  double aperture = 0;
+  for (std::size_t n = 0; n < fit.p_HF.size(); ++n) {
+    const double now = Aperture(fit.p_HF[n], fit.run.involved);
+    if (now <= aperture || !measured(static_cast<double>(n) * fit.dt)) continue;
+    aperture = now;
+    widest = n;
+  }
+  return widest;
+}
+
+Fingertips Preshape(const FitProblem& fit, std::size_t widest) {
+  constexpr double kAfter = 0.08;  // of T: so far beyond the widest instant the hand stays open
+  constexpr int kRounds = 5;
+  const double steps_per_T = fit.run.T / fit.dt;
+  const double damped = fit.rule.omega_T * fit.rule.zeta;
+  const double split =
+      fit.rule.omega_T * std::sqrt(std::max(1e-6, fit.rule.zeta * fit.rule.zeta - 1));
+  // What of the tips' places the auxiliary springs alone do not explain, step by step.
+  std::vector<Fingertips> ways;
+  const auto end = std::min(
+      fit.p_HF.size(), widest + static_cast<std::size_t>(std::lround(kAfter * steps_per_T)) + 1);
+  for (std::size_t n = 0; n < end; ++n) {
+    const double s = static_cast<double>(n) / steps_per_T;
+    const double left =
+        std::exp(-damped * s) * (std::cosh(split * s) + damped / split * std::sinh(split * s));
+    Fingertips way;
+    way.fill(Vector3d::Zero());
+    for (int i = 0; i < kNumFingers; ++i) {
+      if (!fit.run.involved[i]) continue;
+      way[i] = fit.p_HF[n][i] - fit.run.p_HC[i] - left * (fit.run.p_HF[i] - fit.run.p_HC[i]);
+    }
+    ways.push_back(way);
+  }
+  // Their first principal component: how far the whole hand is along `opening` at every step, and
+  // the opening that explains all steps best, by turns.
+  Fingertips opening = ways[std::min(widest, ways.size() - 1)];
+  const auto dot = [](const Fingertips& a, const Fingertips& b) {
+    double sum = 0;
+    for (int i = 0; i < kNumFingers; ++i) sum += a[i].dot(b[i]);
+    return sum;
+  };
+  for (int round = 0; round < kRounds && dot(opening, opening) > 0; ++round) {
+    Fingertips next;
+    next.fill(Vector3d::Zero());
+    double most = 0, squares = 0;
+    for (const Fingertips& way : ways) {
+      const double along = dot(way, opening) / dot(opening, opening);
+      for (int i = 0; i < kNumFingers; ++i) next[i] += along * way[i];
+      squares += along * along;
+      most = std::max(most, along);
+    }
+    if (squares <= 0) break;
+    for (int i = 0; i < kNumFingers; ++i) opening[i] = next[i] * (most / squares);
+  }
+  double mean = 0;
+  for (const Vector3d& way : opening) mean += way.norm();
+  // A hand that only closes: the way back to its start.
+  if (mean > 0.01) return opening;
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (fit.run.involved[i]) opening[i] = fit.run.p_HF[i] - fit.run.p_HC[i];
+  }
+  return opening;
+}
+
+}  // namespace springgrasp
