@@ -149,6 +149,15 @@ TEST(BlendGrasps, FingertipsNeverCrossAndTheHumanHandReachesThem) {
   }
 }
 
+TEST(BlendGrasps, AGraspInBetweenCanBeWrittenAndRead) {
+  const GenerateOptions options = OnABall();
+  const Grasp grasp =
+      BlendGrasps(Library()[1].grasp, Library()[3].grasp, 0.3, options.shape, options.tip_radius);
+  const Grasp read = ParseGrasp(FormatGrasp(grasp), "grasp");
+  EXPECT_EQ(read.share, grasp.share);
+  EXPECT_LT(Distance(GenerateMotion(read, options), GenerateMotion(grasp, options)), 1e-9);
+}
+
 TEST(BlendGrasps, WhatCannotBeBlendedIsAnError) {
   Grasp a = Library()[0].grasp, b = Library()[1].grasp;
   EXPECT_THROW(BlendGrasps(a, b, 1.5, a.shape, 0.008), Error);
