@@ -169,7 +169,9 @@ Grasp BlendGrasps(const Grasp& from, const Grasp& to, double s, const Shape& sha
   for (int i = 0; i < kNumFingers; ++i) {
     grasp.observed[i] = a.observed[i] || b.observed[i];
     grasp.involved[i] = a.involved[i] || b.involved[i];
-    grasp.share[i] = Mix(a.involved[i] ? a.share[i] : 0.0, b.involved[i] ? b.share[i] : 0.0, s);
+    if (grasp.involved[i]) {
+      grasp.share[i] = Mix(a.involved[i] ? a.share[i] : 0.0, b.involved[i] ? b.share[i] : 0.0, s);
+    }
     if (a.involved[i] && b.involved[i]) {
       grasp.opening[i] = Mix(a.opening[i], b.opening[i], s);
     } else if (grasp.involved[i]) {

@@ -214,6 +214,29 @@ TEST(GenerateTest, ARayThatMissesFallsBackToTheMeanRadius) {
   EXPECT_NEAR(contacts[kThumb].p_OC.norm(), 0.03, 1e-9);
 }
 
+// Eq. (6): without contact points the fingers come to rest on the circle about the centre.
+TEST(GenerateTest, TheObjectsCentreAloneClosesTheHandOnItsMeanRadius) {
+  for (const char* type : {"pinch", "tripod"}) {
+    GenerateOptions options;
+    options.shape = ParseShape("sphere:0.05");
+    options.object_centre = true;
+    const FingertipMotion motion = GenerateMotion(Learned(type), options);
+    const double radius = 0.025 + options.tip_radius;
+    double widest = 0;
+    for (const FingertipMotionSample& sample : motion.samples) {
+      widest = std::max(widest, Span(sample.p_HF, motion.involved));
+    }
+    for (int i = 0; i < kNumFingers; ++i) {
+      if (!motion.involved[i]) continue;
+      const Vector3d end = motion.X_HO.inverse() * motion.samples.back().p_HF[i];
+      EXPECT_NEAR(end.norm(), radius, 0.001) << type << " " << i;
+      EXPECT_LT((end - motion.p_OC[i]).norm(), 1e-12);
+    }
+    EXPECT_GT(widest, Span(motion.samples.back().p_HF, motion.involved) + 0.005);
+    EXPECT_LT(motion.p_OC[kThumb].dot(motion.p_OC[kIndex]), 0);  // on either side
+  }
+}
+
 TEST(GenerateTest, ImpossibleRequestsAreErrors) {
   GenerateOptions options;
   options.duration = -1.0;
