@@ -100,7 +100,7 @@ std::optional<TrackedFrame> FingertipTracker::Impl::Start(const cv::Mat& left, c
   // The palm: widest place of the skin near the caps, else the middle of the caps' arc.
   skin = LearnSkin(left, colour, cap_px, radius_px);
   HandMask hand;
-  SegmentHand(left, SameLevels(), skin, colour, cap_px, radius_px, Whole(0), 2, hand);
+  SegmentHand(left, SameLevels(), skin, colour, cap_px, radius_px, {}, Whole(0), 2, hand);
   Eigen::Vector2d palm =
       PalmCentre(hand, cap_px, radius_px, 16 * radius_px).value_or(PalmFromCaps(caps_left));
   const PerFinger<int> order = LabelFingers(caps_left, palm, options.hand);

@@ -131,7 +131,15 @@ std::optional<PerFinger<int>> HandFollower::BetterLabels(const StereoFrame& fram
       found = true;
     }
   }
-  if (!found) return std::nullopt;
+  if (!found) {
+    if (fit_->tips_used >= 4) {
+      if (const auto anew = RestartHandFit(model_, cameras_, seen, *fit_, options_)) {
+        fit_ = anew;
+        step_ = {};
+      }
+    }
+    return std::nullopt;
+  }
   fit_ = fit;
   const TrackedFrame as_found = tracked;
   for (int f = 0; f < kNumFingers; ++f) tracked.fingers[f] = as_found.fingers[best[f]];
@@ -202,8 +210,16 @@ bool HandFollower::Segment(int v, const cv::Mat& bgr, const TrackedFrame& tracke
       cv::Rect(0, 0, bgr.cols, bgr.rows);
   if (region.area() < 100) return false;
   const int step = std::max(1, static_cast<int>(std::lround(options_.mask_step * radius)));
+  // Parts that an object cuts off from all caps: where the palm was last, moved on.
+  std::vector<Eigen::Vector2d> palm;
+  for (const HandBall& ball : model_.balls) {
+    if (!fit_ || ball.node != 0) continue;
+    const auto pixel =
+        Project(camera, fit_->X_WH * Eigen::Vector3d(fit_->scale * ball.p_B) + step_.position);
+    if (pixel) palm.push_back(*pixel);
+  }
   SegmentHand(bgr, white_balance_[v].LevelsOf(bgr), tracker.skin(), tracker.colour(), caps, radius,
-              region, step, masks_[v]);
+              palm, region, step, masks_[v]);
   return true;
 }
 

@@ -92,23 +92,25 @@ Eigen::Vector3d PalmOf(const HandFit& fit) {
   return fit.X_WH * Eigen::Vector3d(0.045 * fit.scale, 0, 0);
 }
 
-std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras& cameras,
-                                    const HandObservation& observation,
-                                    const HandPoseOptions& options) {
+namespace {
+
+// Hands with their palm to the cameras and fingers in the picture from the hand's skin to its tips,
+// bent and tilted towards the cameras by some amounts, laid onto the tips seen. Empty if these are
+// not before the camera.
+std::vector<HandFit> LikelyHands(const HandModel& model, const StereoCameras& cameras,
+                                 const HandObservation& observation, double scale) {
   std::vector<int> seen;
   for (int f = 0; f < kNumFingers; ++f) {
     if (observation.tip_W[f]) seen.push_back(f);
   }
-  if (seen.size() < 4) return std::nullopt;
-  // Starts: palm to the cameras, fingers in the picture from the hand's skin to its tips, bent and
-  // tilted towards the cameras by some amounts.
+  std::vector<HandFit> hands;
   const Eigen::Matrix3d R_WC = cameras.left.X_WC.linear();
   const Eigen::Vector3d forward = R_WC.col(2);
   Eigen::Vector3d tips = Eigen::Vector3d::Zero();
   for (int f : seen) tips += *observation.tip_W[f] / static_cast<double>(seen.size());
   Eigen::Vector3d along = Eigen::Vector3d::Zero();  // in the picture plane, from palm to tips
   const auto tips_px = Project(cameras.left, tips);
-  if (!tips_px) return std::nullopt;
+  if (!tips_px) return hands;
   if (observation.masks[0] != nullptr && !observation.masks[0]->mask.empty()) {
     const double depth = forward.dot(tips - cameras.left.X_WC.translation());
     const MaskField field = MakeField(*observation.masks[0], 200, *tips_px,
@@ -119,6 +121,34 @@ std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras&
   }
   if (along.norm() < 1e-6) along = -Eigen::Vector3d::UnitY();
   along = (R_WC * along).normalized();
+  for (const double bend : {0.3, 1.0, 1.7}) {
+    for (const double tilt : {-0.4, 0.0, 0.5, 1.0}) {
+      HandFit start;
+      start.scale = scale;
+      start.q = (bend * model.rest).cwiseMax(model.tree.lower).cwiseMin(model.tree.upper);
+      start.X_WH.linear() << along, forward.cross(along), forward;
+      start.X_WH.linear() =
+          start.X_WH.linear() * ExpRotation(Eigen::Vector3d(0, tilt, 0)).toRotationMatrix();
+      Eigen::Vector3d model_tips = Eigen::Vector3d::Zero();
+      for (int f : seen)
+        model_tips += FittedTip(model, start, f) / static_cast<double>(seen.size());
+      start.X_WH.translation() = tips - model_tips;
+      hands.push_back(start);
+    }
+  }
+  return hands;
+}
+
+}  // namespace
+
+std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras& cameras,
+                                    const HandObservation& observation,
+                                    const HandPoseOptions& options) {
+  std::vector<int> seen;
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (observation.tip_W[f]) seen.push_back(f);
+  }
+  if (seen.size() < 4) return std::nullopt;
   // Coarse to fine: outlines pull from afar first.
   HandPoseOptions coarse = options;
   coarse.mask_reach_px *= 2.5;
@@ -130,19 +160,8 @@ std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras&
   HandFitProblem coarse_problem(model, cameras, observation, fields, any, any.X_WH, true, true,
                                 coarse);
   std::vector<HandFit> starts;
-  for (const double bend : {0.3, 1.0, 1.7}) {
-    for (const double tilt : {-0.4, 0.0, 0.5, 1.0}) {
-      HandFit start;
-      start.q = (bend * model.rest).cwiseMax(model.tree.lower).cwiseMin(model.tree.upper);
-      start.X_WH.linear() << along, forward.cross(along), forward;
-      start.X_WH.linear() =
-          start.X_WH.linear() * ExpRotation(Eigen::Vector3d(0, tilt, 0)).toRotationMatrix();
-      Eigen::Vector3d model_tips = Eigen::Vector3d::Zero();
-      for (int f : seen)
-        model_tips += FittedTip(model, start, f) / static_cast<double>(seen.size());
-      start.X_WH.translation() = tips - model_tips;
-      starts.push_back(Solve(coarse_problem, model, start, options.start_iterations));
-    }
+  for (const HandFit& hand : LikelyHands(model, cameras, observation, 1)) {
+    starts.push_back(Solve(coarse_problem, model, hand, options.start_iterations));
   }
   std::stable_sort(starts.begin(), starts.end(),
                    [](const HandFit& a, const HandFit& b) { return a.cost < b.cost; });
@@ -153,6 +172,31 @@ std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras&
     if (!best || fit.cost < best->cost) best = fit;
   }
   if (best) JudgeTips(model, observation, *best);
+  return best;
+}
+
+std::optional<HandFit> RestartHandFit(const HandModel& model, const StereoCameras& cameras,
+                                      const HandObservation& observation, const HandFit& last,
+                                      const HandPoseOptions& options) {
+  constexpr double kFree = 10, kClearlyBetter = 5;
+  HandPoseOptions free = options;
+  free.pose_sigma *= kFree;
+  free.turn_sigma *= kFree;
+  free.joint_sigma *= kFree;
+  const HandFields fields = MakeFields(cameras, observation, options);
+  HandFitProblem now(model, cameras, observation, fields, last, last.X_WH, false, false, free);
+  HandFit best = Solve(now, model, last, options.iterations);
+  const double least = best.cost - kClearlyBetter;
+  bool found = false;
+  for (const HandFit& hand : LikelyHands(model, cameras, observation, last.scale)) {
+    const HandFit other = Solve(now, model, hand, options.start_iterations);
+    if (other.cost >= std::min(least, best.cost)) continue;
+    best = other;
+    found = true;
+  }
+  if (!found) return std::nullopt;
+  best.frame = last.frame;
+  JudgeTips(model, observation, best);
   return best;
 }
 

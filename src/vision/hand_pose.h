@@ -73,6 +73,12 @@ HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
                       const HandObservation& observation, const HandFit& last,
                       const HandStep& moved, bool fit_scale, const HandPoseOptions& options = {});
 
+// A fit from all over, for a hand whose fit has gone astray: as in the first frame, but with the
+// scale of the last fit and a loose hold on its pose. Nothing if none is clearly better.
+std::optional<HandFit> RestartHandFit(const HandModel& model, const StereoCameras& cameras,
+                                      const HandObservation& observation, const HandFit& last,
+                                      const HandPoseOptions& options = {});
+
 // Fingertip and last bone's direction (towards the tip) of a fit, in W: hints for the tracker.
 Eigen::Vector3d FittedTip(const HandModel& model, const HandFit& fit, int finger);
 Eigen::Vector3d FittedAxis(const HandModel& model, const HandFit& fit, int finger);

@@ -100,7 +100,8 @@ Eigen::Vector2d HandMask::ToPixel(const Eigen::Vector2d& entry) const {
 
 void SegmentHand(const cv::Mat& bgr, const LevelTable& levels, const SkinModel& skin,
                  const MarkerColour& caps, const std::vector<Eigen::Vector2d>& cap_px,
-                 double cap_radius_px, const cv::Rect& region, int step, HandMask& hand) {
+                 double cap_radius_px, const std::vector<Eigen::Vector2d>& hand_px,
+                 const cv::Rect& region, int step, HandMask& hand) {
   hand.region = region;
   hand.step = step;
   const int rows = (region.height + step - 1) / step, cols = (region.width + step - 1) / step;
@@ -118,7 +119,7 @@ void SegmentHand(const cv::Mat& bgr, const LevelTable& levels, const SkinModel& 
   cv::threshold(hand.mask, hand.mask, 127, 255, cv::THRESH_BINARY);
   const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_ELLIPSE, {3, 3});
   cv::morphologyEx(hand.mask, hand.mask, cv::MORPH_OPEN, kernel);
-  // Keep what touches a cap.
+  // Keep what touches a cap or is known to be the hand.
   cv::Mat labels;
   const int count = cv::connectedComponents(hand.mask, labels, 8, CV_32S);
   std::vector<std::uint8_t> keep(count, 0);
@@ -132,6 +133,11 @@ void SegmentHand(const cv::Mat& bgr, const LevelTable& levels, const SkinModel& 
         keep[labels.at<int>(i, j)] = 1;
       }
     }
+  }
+  for (const auto& pixel : hand_px) {
+    const Eigen::Vector2d at = hand.ToMask(pixel);
+    const int j = static_cast<int>(std::lround(at.x())), i = static_cast<int>(std::lround(at.y()));
+    if (i >= 0 && j >= 0 && i < rows && j < cols) keep[labels.at<int>(i, j)] = 1;
   }
   keep[0] = 0;
   for (int i = 0; i < rows; ++i) {

@@ -48,11 +48,13 @@ struct HandMask {
 // Whether a pixel is skin or cap.
 bool OnSkin(const HandMask& hand, const Eigen::Vector2d& pixel);
 
-// Skin and caps within `region`, only the parts connected to a cap. `levels` turn the picture's
+// Skin and caps within `region`, only the parts connected to a cap or under one of `hand_px`, where
+// the hand is otherwise known to be. `levels` turn the picture's
 // colours to those that the skin was learned in. Reuses the memory of `hand`.
 void SegmentHand(const cv::Mat& bgr, const LevelTable& levels, const SkinModel& skin,
                  const MarkerColour& caps, const std::vector<Eigen::Vector2d>& cap_px,
-                 double cap_radius_px, const cv::Rect& region, int step, HandMask& hand);
+                 double cap_radius_px, const std::vector<Eigen::Vector2d>& hand_px,
+                 const cv::Rect& region, int step, HandMask& hand);
 
 // Centre of the largest disc inside the mask that is not farther from the middle of the caps than
 // `reach_px`, if possible about equally far from all of them: the palm. Nothing if no disc is wider

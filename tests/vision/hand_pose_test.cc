@@ -84,6 +84,20 @@ TEST_F(HandPoseTest, AnOpenHandIsFoundWithoutAGuess) {
   EXPECT_LT(fit->tip_rms, 0.004);
 }
 
+TEST_F(HandPoseTest, AFitThatWentAstrayIsFoundAgainAndAGoodOneIsKept) {
+  See(model, truth, eyes, seen);
+  HandFit good = UpdateHandFit(model, eyes, seen.observation, truth, {}, false);
+  EXPECT_FALSE(RestartHandFit(model, eyes, seen.observation, good));
+  HandFit astray = truth;
+  astray.X_WH.translation() += Eigen::Vector3d(0.05, 0.03, 0.05);
+  astray.X_WH.linear() =
+      Eigen::AngleAxisd(0.9, Eigen::Vector3d::UnitZ()).toRotationMatrix() * truth.X_WH.linear();
+  const auto fit = RestartHandFit(model, eyes, seen.observation, astray);
+  ASSERT_TRUE(fit);
+  EXPECT_LT((fit->X_WH.translation() - truth.X_WH.translation()).norm(), 0.015);
+  EXPECT_LT(TurnDeg(*fit, truth), 12);
+}
+
 TEST_F(HandPoseTest, AMovingHandIsFollowed) {
   HandFit fit = truth;
   HandStep step;
