@@ -165,12 +165,13 @@ void FingertipTracker::Impl::Search() {
   const auto disagreement = [&](const PerFinger<const Choice*>& chosen) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     int count = 0;
-    for (const Choice* choice : chosen) {
-      if (choice != nullptr) mean += choice->off, ++count;
+    const auto counts = [&](int f) { return chosen[f] != nullptr && fingers[f].lost_frames > 0; };
+    for (int f = 0; f < kNumFingers; ++f) {
+      if (counts(f)) mean += chosen[f]->off, ++count;
     }
     double sum = 0;
-    for (const Choice* choice : chosen) {
-      if (choice != nullptr) sum += (choice->off - mean / count).squaredNorm();
+    for (int f = 0; f < kNumFingers; ++f) {
+      if (counts(f)) sum += (chosen[f]->off - mean / count).squaredNorm();
     }
     return sum / (kApart * kApart);
   };
