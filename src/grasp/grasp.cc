@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <limits>
+
+#include "grasp/spring_estimation.h"
 
 namespace springgrasp {
 namespace {
@@ -52,6 +55,14 @@ std::string ReportGrasp(const Grasp& grasp) {
     } else {
       fmt::format_to(to, " N/m (not observed, assumed)\n");
     }
+  }
+  for (const GraspEdge& edge : grasp.edges) {
+    const std::string name = fmt::format("{}-{}", kFingerNames[edge.i], kFingerNames[edge.j]);
+    // A grasp has an error of 0 where there is none: the spring shows in no sample.
+    const double error =
+        edge.standard_error > 0 ? edge.standard_error : std::numeric_limits<double>::infinity();
+    const std::string remark = RemarkOnSpring(name, edge.k, error);
+    if (!remark.empty()) out += remark + "\n";
   }
   fmt::format_to(to, "condition number: {:.1f}\n", grasp.quality.condition_number);
   fmt::format_to(to,

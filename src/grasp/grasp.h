@@ -101,8 +101,8 @@ Grasp ParseGrasp(const std::string& text, const std::string& name);
 Grasp ReadGrasp(const std::string& path);
 void WriteGrasp(const Grasp& grasp, const std::string& path);
 
-// What `learn` prints: each k with its standard error, the condition number, and a line per finger
-// `index RMSE 2.1 mm`, involved ones marked with *.
+// What `learn` prints: each k with its error, a sentence for each that the data cannot determine,
+// and a line per finger `index RMSE 2.1 mm`, involved ones marked with *.
 std::string ReportGrasp(const Grasp& grasp);
 
 }  // namespace springgrasp

@@ -173,23 +173,14 @@ std::string FingerName(int finger, int num_fingers) {
                                     : fmt::format("finger {}", finger);
 }
 
-// A sentence for each constant whose error is as large as itself.
 void Remark(const SpringSystem& system, SpringEstimate& estimate) {
   for (std::size_t e = 0; e < system.springs.size(); ++e) {
     const double k = estimate.k[static_cast<Index>(e)];
     const double error = estimate.standard_error[static_cast<Index>(e)];
     const std::string name = FingerName(system.springs[e].i, system.num_fingers()) + "-" +
                              FingerName(system.springs[e].j, system.num_fingers());
-    if (!std::isfinite(error)) {
-      estimate.remarks.push_back(fmt::format(
-          "The data cannot determine the spring {}: its change of length shows in no sample.",
-          name));
-    } else if (error >= k) {
-      estimate.remarks.push_back(
-          fmt::format("The data cannot determine the spring {}: {:.3g} N/m with a standard error "
-                      "of {:.3g} N/m.",
-                      name, k, error));
-    }
+    std::string remark = RemarkOnSpring(name, k, error);
+    if (!remark.empty()) estimate.remarks.push_back(std::move(remark));
   }
 }
 
@@ -217,6 +208,17 @@ std::vector<VectorXd> FingerErrors(const std::vector<SpringObservation>& observa
 }
 
 }  // namespace
+
+std::string RemarkOnSpring(std::string_view name, double k, double standard_error) {
+  if (!std::isfinite(standard_error)) {
+    return fmt::format(
+        "The data cannot determine the spring {}: its change of length shows in no sample.", name);
+  }
+  if (standard_error < k) return {};
+  return fmt::format(
+      "The data cannot determine the spring {}: {:.3g} N/m with a standard error of {:.3g} N/m.",
+      name, k, standard_error);
+}
 
 SpringSystem WithEstimate(const SpringSystem& system, const SpringEstimate& estimate) {
   SpringSystem out = system;

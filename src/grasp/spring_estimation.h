@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "grasp/spring_integrator.h"
@@ -91,6 +92,10 @@ struct SpringEstimate {
   // One plain sentence for each constant that the data cannot determine.
   std::vector<std::string> remarks;
 };
+
+// A plain sentence on the spring `name` (as thumb-index) if its standard error is as large as k, or
+// infinite: it shows in no sample. Empty if the data determine k.
+std::string RemarkOnSpring(std::string_view name, double k, double standard_error);
 
 // The full recipe. Throws Error if observations disagree in springs or sizes, or if there are fewer
 // rows than constants.

@@ -21,6 +21,11 @@ constexpr double kAA[2][2] = {{kGaussA[0][0] * kGaussA[0][0] + kGaussA[0][1] * k
 constexpr double kBA[2] = {0.5 * (kGaussA[0][0] + kGaussA[1][0]),
                            0.5 * (kGaussA[0][1] + kGaussA[1][1])};
 
+// A matrix made for a step that differs by less than this part is good enough for Newton.
+constexpr double kSameStep = 0.02;
+// A matrix by which the error falls to no less than this part is renewed for the next step.
+constexpr double kSlow = 0.2;
+
 Map<const VectorXd> Flat(const MatrixXd& points) { return {points.data(), points.size()}; }
 Map<VectorXd> Flat(MatrixXd& points) { return {points.data(), points.size()}; }
 
@@ -39,39 +44,49 @@ SpringStepper::SpringStepper(const SpringSystem& system, const SpringIntegration
   Jv_.setZero(n, n);
   newton_.setIdentity(2 * n, 2 * n);
   residual_.setZero(2 * n);
-  slope_.setZero(n);
+  past_.setZero(n, 4);
   change_.setZero(2 * n);
   lu_ = Eigen::PartialPivLU<MatrixXd>(newton_);
   EvaluateSprings(system_, stages_.p[0], stages_.v[0], 0, terms_);
 }
 
-bool SpringStepper::TryStep(const ForceProfile& force, double t, double h, const MatrixXd& p,
-                            const MatrixXd& v) {
+// The matrix of Newton's method, with the Jacobian at the step's start.
+void SpringStepper::Factor(double f, double h, const MatrixXd& p, const MatrixXd& v) {
   const Index n = system_.num_coordinates();
-  const double f_middle = force.f(t + 0.5 * h);
-  EvaluateSprings(system_, p, v, f_middle, terms_);
-  SpringJacobian(system_, p, v, f_middle, terms_, Jp_, Jv_);
+  EvaluateSprings(system_, p, v, f, terms_);
+  SpringJacobian(system_, p, v, f, terms_, Jp_, Jv_);
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 2; ++j) {
       auto block = newton_.block(i * n, j * n, n, n);
       block = -h * h * kAA[i][j] * Jp_ - h * kGaussA[i][j] * Jv_;
       if (i == j) block.diagonal().array() += 1;
     }
-    stages_.f[i] = force.f(t + kGaussC[i] * h);
   }
-  // Newton starts from the line through the stages of the step before, where this one follows it.
-  if (follows_ && stages_.h == h && std::abs(stages_.t + h - t) < 1e-9 * h) {
-    slope_ = (stages_.a[1] - stages_.a[0]) / (kGaussC[1] - kGaussC[0]);
-    stages_.a[0] += slope_;
-    stages_.a[1] += slope_;
-  } else {
-    for (VectorXd& a : stages_.a) a = Flat(terms_.acc);
-  }
-  follows_ = false;
   lu_.compute(newton_);
-  stages_.t = t;
-  stages_.h = h;
+  factored_h_ = h;
+}
+
+// Newton starts from the polynomial through the stages of up to two steps before.
+void SpringStepper::Predict(double t, double h) {
+  for (int i = 0; i < 2; ++i) {
+    const double time = t + kGaussC[i] * h;
+    stages_.a[i].setZero();
+    for (int k = 4 - known_; k < 4; ++k) {
+      double weight = 1;
+      for (int j = 4 - known_; j < 4; ++j) {
+        if (j != k) weight *= (time - past_t_[j]) / (past_t_[k] - past_t_[j]);
+      }
+      stages_.a[i] += weight * past_.col(k);
+    }
+  }
+}
+
+// The stage accelerations of Eq. (5) by Newton's method with a matrix made before. False if it
+// converges slowly or not at all.
+bool SpringStepper::Solve(double h, const MatrixXd& p, const MatrixXd& v) {
+  const Index n = system_.num_coordinates();
   const double size = 1 + std::max(p.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
+  double before = 0;
   for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
     for (int i = 0; i < 2; ++i) {
       Flat(stages_.v[i]) =
@@ -89,12 +104,34 @@ bool SpringStepper::TryStep(const ForceProfile& force, double t, double h, const
     stages_.a[1] += change_.tail(n);
     const double change = h * change_.cwiseAbs().maxCoeff();
     if (!std::isfinite(change)) return false;
-    if (change < options_.tolerance * size) {
-      follows_ = true;
-      return true;
-    }
+    if (change < options_.tolerance * size) return true;
+    // With a fixed matrix the error falls by the same rate every time: that tells what is left.
+    const double rate = before > 0 ? change / before : 0;
+    if (rate > 0 && rate < 1 && change * rate < options_.tolerance * size * (1 - rate)) return true;
+    if (rate > kSlow) factored_h_ = 0;
+    before = change;
   }
   return false;
+}
+
+bool SpringStepper::TryStep(const ForceProfile& force, double t, double h, const MatrixXd& p,
+                            const MatrixXd& v) {
+  for (int i = 0; i < 2; ++i) stages_.f[i] = force.f(t + kGaussC[i] * h);
+  stages_.t = t;
+  stages_.h = h;
+  if (known_ > 0 && std::abs(end_ - t) > 1e-9 * h) known_ = 0;
+  // The matrix of a step before serves as long as Newton converges with it.
+  if (known_ > 0 && std::abs(factored_h_ - h) < kSameStep * h) {
+    Predict(t, h);
+    if (Solve(h, p, v)) return true;
+  }
+  Factor(force.f(t + 0.5 * h), h, p, v);
+  if (known_ > 0) {
+    Predict(t, h);
+  } else {
+    for (VectorXd& a : stages_.a) a = Flat(terms_.acc);
+  }
+  return Solve(h, p, v);
 }
 
 bool SpringStepper::StepHalving(const ForceProfile& force, double t, double h, int depth,
@@ -102,6 +139,14 @@ bool SpringStepper::StepHalving(const ForceProfile& force, double t, double h, i
   if (TryStep(force, t, h, p, v)) {
     Flat(p) += h * Flat(v) + (h * h) * (kBA[0] * stages_.a[0] + kBA[1] * stages_.a[1]);
     Flat(v) += (0.5 * h) * (stages_.a[0] + stages_.a[1]);
+    for (int i = 0; i < 2; ++i) {
+      past_t_[i] = past_t_[i + 2];
+      past_t_[i + 2] = t + kGaussC[i] * h;
+      past_.col(i) = past_.col(i + 2);
+      past_.col(i + 2) = stages_.a[i];
+    }
+    known_ = std::min(4, known_ + 2);
+    end_ = t + h;
     if (on_step) on_step(stages_);
     return p.allFinite() && v.allFinite();
   }

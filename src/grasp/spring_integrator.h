@@ -25,8 +25,8 @@ struct SpringTrajectory {
 
 struct SpringIntegration {
   double step = 0.005;       // s, largest step
-  double tolerance = 1e-12;  // Newton stops when h max|change of stage accelerations| < tolerance
-                             // (1 + max |state|)
+  double tolerance = 1e-12;  // Newton stops when h max|error of stage accelerations|, judged by its
+                             // last two changes, < tolerance (1 + max |state|)
   int max_iterations = 12;   // then the step is halved
   int max_halvings = 12;
 };
@@ -63,6 +63,9 @@ class SpringStepper {
  private:
   bool TryStep(const ForceProfile& force, double t, double h, const Eigen::MatrixXd& p,
                const Eigen::MatrixXd& v);
+  bool Solve(double h, const Eigen::MatrixXd& p, const Eigen::MatrixXd& v);
+  void Factor(double f, double h, const Eigen::MatrixXd& p, const Eigen::MatrixXd& v);
+  void Predict(double t, double h);
   bool StepHalving(const ForceProfile& force, double t, double h, int depth, Eigen::MatrixXd& p,
                    Eigen::MatrixXd& v);
 
@@ -71,9 +74,14 @@ class SpringStepper {
   SpringTerms terms_;
   Stages stages_;
   Eigen::MatrixXd Jp_, Jv_, newton_;
-  Eigen::VectorXd residual_, change_, slope_;
-  bool follows_ = false;  // stages_ are those of an accepted step
+  Eigen::VectorXd residual_, change_;
+  // Accelerations at the stages of the last accepted steps without a gap between them.
+  double past_t_[4] = {0, 0, 0, 0};
+  Eigen::MatrixXd past_;  // dim N x 4
+  int known_ = 0;         // of its columns, the last ones
+  double end_ = 0;        // s, of the last accepted step
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  double factored_h_ = 0;  // s, the step that lu_ was made for; 0: make a new one
 };
 
 // Advances from t0 to t1 in equal steps of at most `step`, restarted at the kinks of the force.

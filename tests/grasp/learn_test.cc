@@ -14,6 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 Grasp Learn(const SyntheticGrasp& made, std::uint64_t seed, LearnOptions options = {}) {
   RandomEngine engine = MakeStream(seed, 0, "learn_test");
@@ -180,6 +181,24 @@ TEST(LearnTest, ReportNamesEveryFingerWithItsError) {
   EXPECT_THAT(report, HasSubstr("index RMSE"));
   EXPECT_THAT(report, HasSubstr("mm *"));
   EXPECT_THAT(report, HasSubstr("condition number"));
+}
+
+TEST(LearnTest, ReportSaysWhichSpringsTheDemonstrationCannotDetermine) {
+  Grasp grasp = Learn({}, 8);
+  ASSERT_GE(grasp.edges.size(), 4u);
+  for (GraspEdge& edge : grasp.edges) {
+    edge.k = 0.5;
+    edge.standard_error = 0.1;
+  }
+  EXPECT_THAT(ReportGrasp(grasp), Not(HasSubstr("cannot determine")));
+  grasp.edges[0].standard_error = 0.6;
+  grasp.edges[3].standard_error = 0;  // not observed
+  const std::string report = ReportGrasp(grasp);
+  EXPECT_THAT(report, HasSubstr("The data cannot determine the spring thumb-index: 0.5 N/m with a "
+                                "standard error of 0.6 N/m.\n"));
+  EXPECT_THAT(report, HasSubstr("The data cannot determine the spring thumb-pinkie: its change of "
+                                "length shows in no sample.\n"));
+  EXPECT_THAT(report, Not(HasSubstr("cannot determine the spring thumb-middle")));
 }
 
 TEST(LearnTest, TooLittleToLearnFromIsAnError) {

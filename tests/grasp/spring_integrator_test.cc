@@ -222,6 +222,29 @@ TEST(SpringIntegrator, RunawayParametersGiveNothing) {
                                 EvenTimes(60, 20), {.step = 0.01}));
 }
 
+// The matrix of Newton's method and its starting point are carried over from step to step: that
+// must show only in the time it takes.
+TEST(SpringIntegrator, WhatIsCarriedOverBetweenStepsDoesNotShow) {
+  RandomEngine engine = MakeStream(12, 0, "spring_integrator_test");
+  const ForceProfile force = MakeForceProfile(ReachForce(0.04, 0.01));
+  for (int n = 0; n < 20; ++n) {
+    const int dim = 2 + n % 2;
+    const SpringSystem system = RandomSystem(engine, dim, dim == 2 ? "fan7" : "brace9");
+    MatrixXd p = RandomPoints(engine, dim, 5, 0.1), v = MatrixXd::Zero(dim, 5);
+    MatrixXd p_fresh = p, v_fresh = v;
+    SpringStepper stepper(system);
+    double t = 0;
+    for (int i = 0; i < 80; ++i) {
+      const double h = i % 7 == 3 ? 0.0031 : 0.01;
+      ASSERT_TRUE(stepper.Step(force, t, h, p, v));
+      SpringStepper fresh(system);
+      ASSERT_TRUE(fresh.Step(force, t, h, p_fresh, v_fresh));
+      t += h;
+    }
+    EXPECT_LT((p - p_fresh).cwiseAbs().maxCoeff(), 1e-10);
+  }
+}
+
 TEST(SpringIntegrator, StepsAllocateNothing) {
   for (const int dim : {2, 3}) {
     const SpringSystem system = GraspSystem(true, dim);
