@@ -76,7 +76,8 @@ void FingertipTracker::Impl::Untangle() {
   constexpr double kWhole = 0.6;     // of a cap's pixels: slivers do not tell how the hand moved
   PerFinger<std::optional<Eigen::Vector3d>> seen;
   PerFinger<Eigen::Vector3d> expected;
-  std::array<std::vector<double>, 3> moved;
+  std::array<PerFinger<double>, 3> moved;
+  int whole = 0;
   for (int f = 0; f < kNumFingers; ++f) {
     expected[f] = fingers[f].p_W + fingers[f].v_W;
     if (!views[0].active[f] || !views[1].active[f]) continue;
@@ -84,12 +85,13 @@ void FingertipTracker::Impl::Untangle() {
     if (!point) continue;
     seen[f] = point->p_WQ;
     if (std::min(views[0].mass[f], views[1].mass[f]) < kWhole) continue;
-    for (int k = 0; k < 3; ++k) moved[k].push_back((*seen[f] - expected[f])[k]);
+    for (int k = 0; k < 3; ++k) moved[k][whole] = (*seen[f] - expected[f])[k];
+    ++whole;
   }
   Eigen::Vector3d common = Eigen::Vector3d::Zero();
-  for (int k = 0; k < 3 && moved[0].size() >= 3; ++k) {
-    std::sort(moved[k].begin(), moved[k].end());
-    common[k] = moved[k][moved[k].size() / 2];
+  for (int k = 0; k < 3 && whole >= 3; ++k) {
+    std::sort(moved[k].begin(), moved[k].begin() + whole);
+    common[k] = moved[k][whole / 2];
   }
   const auto cost_of = [&](const PerFinger<int>& order) {
     double cost = 0;
