@@ -131,12 +131,7 @@ std::optional<TrackedFrame> FingertipTracker::Impl::Start(const cv::Mat& left, c
     view.active.fill(true);
     view.particles = MakeParticles(view.region, options.particles.count);
     turn[v] = FingerTurn(view.region, PalmPixel(v));
-    PerFinger<double> window;
-    for (int f = 0; f < kNumFingers; ++f) window[f] = 1.3 * RadiusPx(v, fingers[f].p_W);
-    const MeanShiftResult modes = MeanShift(view.likelihood, view.region, view.active, window);
-    view.region = modes.centre;
-    view.mass = modes.mass;
-    Judge(v);
+    Settle(v);
   }
   started = true;
   return Measure(pictures);
