@@ -9,7 +9,7 @@
 //    epipolar line allows, the five that look most like one hand;
 //  - labels: by polar angle about the palm (widest place of the skin), from the widest gap on,
 //  which
-//    is where the wrist is;
+//    is where the wrist is. With a model of the hand, its shape decides (hand_follower.h);
 //  - colour model: hue and saturation of these caps against the rest of the picture; value is left
 //    out, since lamps change it. It is not adapted later: that would follow whatever covers a cap;
 //  - mean shift: all fingers at once, a pixel counts for the nearest region only;

@@ -59,8 +59,8 @@ std::optional<TrackedFrame> HandFollower::Start(FingertipTracker& tracker, const
 
 const HandFit* HandFollower::Follow(const StereoFrame& frame, const TrackedFrame& tracked,
                                     const FingertipTracker& tracker, bool fit_scale) {
-  const HandObservation observation = Observe(frame, tracked, tracker);
   if (std::exchange(fresh_, false)) return &*fit_;
+  const HandObservation observation = Observe(frame, tracked, tracker);
   if (!fit_) {
     fit_ = StartHandFit(model_, cameras_, observation, options_);
     return fit_ ? &*fit_ : nullptr;

@@ -9,23 +9,11 @@
 #include "experiment/demonstrator_recorded.h"
 #include "experiment/demonstrator_synthesise.h"
 #include "experiment/observe_stage.h"
+#include "experiment/synthesised_demonstration.h"
 #include "grasp/object_contacts.h"
-#include "sim/kinematic_tree_of.h"
-#include "sim/scene_builder.h"
 
 namespace springgrasp {
 namespace {
-
-const DemonstratorHand& Hand() {
-  static const DemonstratorHand hand = [] {
-    BuildOptions options;
-    options.with_robot = options.with_table = options.with_objects = false;
-    options.with_demonstrator = true;
-    const ModelPtr model = BuildModel(Scene{}, options);
-    return MakeDemonstratorHand(KinematicTreeOf(*model, "mmm_hand"));
-  }();
-  return hand;
-}
 
 struct Case {
   const char* type;
@@ -52,17 +40,17 @@ TEST_P(SynthesisedGraspTest, EndsWithTheInvolvedTipsOnTheObject) {
   const Shape shape = ParseShape(GetParam().shape);
   for (int seed = 0; seed < 6; ++seed) {
     RandomEngine engine = MakeStream(seed, 0, "observation");
-    const HandMotion motion = SynthesiseGrasp(Hand(), {GetParam().type, shape}, engine);
+    const HandMotion motion = SynthesiseGrasp(SharedHand(), {GetParam().type, shape}, engine);
     const HandMotionSample& last = motion.samples.back();
-    const HandShape parts = ComputeHandShape(Hand(), last.q);
+    const HandShape parts = ComputeHandShape(SharedHand(), last.q);
     Eigen::Vector3d others = Eigen::Vector3d::Zero(), thumb = others;
     for (int f = 0; f < kNumFingers; ++f) {
       const Eigen::Vector3d tip = last.X_WH * parts.tips[f];
       if (!motion.involved[f]) {
-        EXPECT_GT(SignedDistance(shape, tip), Hand().tip_radius - 0.001) << kFingerNames[f];
+        EXPECT_GT(SignedDistance(shape, tip), SharedHand().tip_radius - 0.001) << kFingerNames[f];
         continue;
       }
-      EXPECT_NEAR(SignedDistance(shape, tip), Hand().tip_radius, 0.001) << kFingerNames[f];
+      EXPECT_NEAR(SignedDistance(shape, tip), SharedHand().tip_radius, 0.001) << kFingerNames[f];
       (f == kThumb ? thumb : others) += OutwardNormal(shape, tip);
     }
     EXPECT_LT(thumb.normalized().dot(others.normalized()), -0.85) << "thumb opposes the fingers";
@@ -74,7 +62,7 @@ TEST_P(SynthesisedGraspTest, SmallAndLargeHandsHoldTheSameObject) {
   const Shape shape = ParseShape(GetParam().shape);
   for (const double length : {0.165, 0.205}) {
     const DemonstratorHand hand = HandOfLength(length);
-    EXPECT_NEAR(hand.tip_radius, Hand().tip_radius * length / kMmmHandLength, 1e-12);
+    EXPECT_NEAR(hand.tip_radius, SharedHand().tip_radius * length / kMmmHandLength, 1e-12);
     RandomEngine engine = MakeStream(1, 0, "observation");
     const HandMotion motion = SynthesiseGrasp(hand, {GetParam().type, shape}, engine);
     const HandShape parts = ComputeHandShape(hand, motion.samples.back().q);
@@ -91,11 +79,11 @@ TEST_P(SynthesisedGraspTest, MovesLikeAPerson) {
   const Shape shape = ParseShape(GetParam().shape);
   for (int seed = 0; seed < 6; ++seed) {
     RandomEngine engine = MakeStream(seed, 0, "observation");
-    const HandMotion motion = SynthesiseGrasp(Hand(), {GetParam().type, shape}, engine);
+    const HandMotion motion = SynthesiseGrasp(SharedHand(), {GetParam().type, shape}, engine);
     std::vector<double> speed, aperture;
     for (std::size_t i = 0; i < motion.samples.size(); ++i) {
       const HandMotionSample& sample = motion.samples[i];
-      const HandShape parts = ComputeHandShape(Hand(), sample.q);
+      const HandShape parts = ComputeHandShape(SharedHand(), sample.q);
       aperture.push_back((parts.tips[kThumb] - parts.tips[kIndex]).norm());
       const Eigen::Vector3d step =
           sample.X_WH.translation() - motion.samples[i > 0 ? i - 1 : 0].X_WH.translation();
@@ -126,7 +114,7 @@ TEST_P(SynthesisedGraspTest, DependsOnTheEngineAlone) {
   const Shape shape = ParseShape(GetParam().shape);
   const auto end_of = [&](int seed) {
     RandomEngine engine = MakeStream(seed, 0, "observation");
-    const HandMotion motion = SynthesiseGrasp(Hand(), {GetParam().type, shape}, engine);
+    const HandMotion motion = SynthesiseGrasp(SharedHand(), {GetParam().type, shape}, engine);
     return Eigen::Vector3d(motion.samples[40].X_WH.translation());
   };
   EXPECT_EQ(end_of(3), end_of(3));
@@ -135,8 +123,8 @@ TEST_P(SynthesisedGraspTest, DependsOnTheEngineAlone) {
 
 TEST(DemonstratorGraspTest, WhatNobodyCanHoldIsRefused) {
   RandomEngine engine = MakeStream(1, 0, "observation");
-  EXPECT_THROW(SynthesiseGrasp(Hand(), {"pinch", ParseShape("sphere:0.4")}, engine), Error);
-  EXPECT_THROW(SynthesiseGrasp(Hand(), {"hug", Shape{}}, engine), Error);
+  EXPECT_THROW(SynthesiseGrasp(SharedHand(), {"pinch", ParseShape("sphere:0.4")}, engine), Error);
+  EXPECT_THROW(SynthesiseGrasp(SharedHand(), {"hug", Shape{}}, engine), Error);
 }
 
 TEST(DemonstratorRecordedTest, TheHandFollowsWhatWasRecorded) {
@@ -146,14 +134,14 @@ TEST(DemonstratorRecordedTest, TheHandFollowsWhatWasRecorded) {
   }
   for (const char* name : {"enclose_03.csv", "pinch_30mm_1.csv", "pinch_40mm_2.csv"}) {
     const Demonstration recording = ReadDemonstration((folder / name).string());
-    const HandMotion motion = HandMotionOf(Hand(), recording);
+    const HandMotion motion = HandMotionOf(SharedHand(), recording);
     ASSERT_EQ(motion.samples.size(), recording.samples.size());
     std::vector<double> errors;
     for (std::size_t i = 0; i < motion.samples.size(); ++i) {
       const HandMotionSample& sample = motion.samples[i];
-      EXPECT_TRUE((sample.q.array() >= Hand().tree.lower.array() - 1e-12).all());
-      EXPECT_TRUE((sample.q.array() <= Hand().tree.upper.array() + 1e-12).all());
-      const HandShape parts = ComputeHandShape(Hand(), sample.q);
+      EXPECT_TRUE((sample.q.array() >= SharedHand().tree.lower.array() - 1e-12).all());
+      EXPECT_TRUE((sample.q.array() <= SharedHand().tree.upper.array() + 1e-12).all());
+      const HandShape parts = ComputeHandShape(SharedHand(), sample.q);
       for (int f = 0; f < kNumFingers; ++f) {
         EXPECT_EQ(sample.recorded[f], recording.samples[i].p_WF[f].has_value());
         if (!sample.recorded[f]) continue;
