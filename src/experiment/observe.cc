@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/pipelined.h"
 #include "experiment/demonstrator_recorded.h"
 #include "experiment/demonstrator_synthesise.h"
 #include "experiment/observe_placement.h"
@@ -165,8 +166,11 @@ Observation ObserveMotion(ObserveStage& stage, const HandMotion& motion, RandomE
   if (stage.shows_object()) tracking.object = motion.object;
   if (stage.cap_hue_deg()) tracking.tracker.colour.hue_deg = stage.cap_hue_deg();
   try {
-    result.tracked = TrackStereo(camera, eyes.told(), &stage.common_hand(), tracking, engine, draw,
-                                 &result.summary);
+    // The rendering context belongs to this thread.
+    Pipelined<StereoFrame>(camera, [&](const FrameSource& rendered) {
+      result.tracked = TrackStereo(rendered, eyes.told(), &stage.common_hand(), tracking, engine,
+                                   draw, &result.summary);
+    });
   } catch (const NotTracked& e) {
     if (options.throw_untracked) throw;
     result.untracked = e.what();

@@ -22,6 +22,34 @@ void FingertipTracker::Impl::DropShared(TrackedFrame& frame) {
   }
 }
 
+// A finger of which only a sliver is seen, and that far from where it should be though it was seen
+// right before, is not there: the sliver is another one's, or the views see different ones.
+void FingertipTracker::Impl::DropJumps(TrackedFrame& frame) {
+  constexpr double kFar = 0.018, kWhole = 0.6;  // m; of a cap's pixels
+  PerFinger<Eigen::Vector3d> off;
+  std::array<PerFinger<double>, 3> sorted;
+  int seen = 0;
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (!frame.fingers[f].p_W) continue;
+    off[f] = *frame.fingers[f].p_W - fingers[f].p_W - fingers[f].v_W;
+    for (int k = 0; k < 3; ++k) sorted[k][seen] = off[f][k];
+    ++seen;
+  }
+  if (seen < 3) return;
+  Eigen::Vector3d common;
+  for (int k = 0; k < 3; ++k) {
+    std::sort(sorted[k].begin(), sorted[k].begin() + seen);
+    common[k] = sorted[k][seen / 2];
+  }
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (!frame.fingers[f].p_W || fingers[f].lost_frames > 0) continue;
+    if (std::min(views[0].mass[f], views[1].mass[f]) > kWhole) continue;
+    if ((off[f] - common).norm() < kFar) continue;
+    frame.fingers[f] = TrackedFinger();
+    for (View& view : views) view.active[f] = false;
+  }
+}
+
 // Fingers pass each other, but they do not stay crossed: where both views have seen the same
 // wrong order about the palm, and since it was right all those concerned were lost at some time,
 // the labels were exchanged then. Fingers that were seen all the time have indeed crossed.

@@ -118,10 +118,11 @@ void FingertipTracker::Impl::Search() {
   for (int v = 0; v < 2; ++v) {
     cv::Mat& rest = memory.rest[v];
     views[v].likelihood(views[v].roi).copyTo(rest(views[v].roi));
-    double smallest = 1e9;
+    double smallest = 1e9, cap_area = 0;
     for (int f = 0; f < kNumFingers; ++f) {
       const double r = RadiusPx(v, fingers[f].p_W);
       smallest = std::min(smallest, std::numbers::pi * r * r);
+      cap_area += std::numbers::pi * r * r * CapArea(v, f) / kNumFingers;
       if (doubtful[f]) continue;
       const Eigen::Vector2d& c = views[v].region[f];
       const int reach = static_cast<int>(std::ceil(1.45 * r));
@@ -134,7 +135,8 @@ void FingertipTracker::Impl::Search() {
         }
       }
     }
-    SegmentMarkers(rest, 0.5 * options.min_mass * smallest, views[v].roi, memory.scratch, blobs[v]);
+    SegmentMarkers(rest, 0.5 * options.min_mass * smallest, views[v].roi, memory.scratch, blobs[v],
+                   options.kind == TrackerKind::kOutline ? cap_area : 0);
     if (blobs[v].size() > 8) blobs[v].resize(8);
   }
 

@@ -128,6 +128,7 @@ TrackedFrame FingertipTracker::Impl::Update(const cv::Mat& left, const cv::Mat& 
   TrackedFrame frame = Measure(pictures);
   clock.Lap(4);
   DropShared(frame);
+  if (outline) DropJumps(frame);
 
   // The hand's common motion carries what is not seen.
   Eigen::Vector3d common = Eigen::Vector3d::Zero();

@@ -164,6 +164,7 @@ struct FingertipTracker::Impl {
   void Reseed(const PerFinger<bool>& doubtful);
   void DropCollisions();
   void DropShared(TrackedFrame& frame);
+  void DropJumps(TrackedFrame& frame);
   void RestoreOrder();
   void Permute(const PerFinger<int>& order, bool with_past = true);
   void Untangle();

@@ -122,9 +122,10 @@ HandFields MakeFields(const StereoCameras& cameras, const HandObservation& obser
     if (!middle) continue;
     const double depth =
         cameras.view(v).X_WC.linear().col(2).dot(middle_W - cameras.view(v).X_WC.translation());
-    fields[v] = MakeField(*observation.masks[v], options.mask_samples, *middle,
-                          cameras.view(v).fx * 0.2 / std::max(0.1, depth));
-    MarkCuts(observation.object != nullptr ? &observation.object->depth[v] : nullptr, fields[v]);
+    fields.masks[v] = MakeField(*observation.masks[v], options.mask_samples, *middle,
+                                cameras.view(v).fx * 0.2 / std::max(0.1, depth));
+    MarkCuts(observation.object != nullptr ? &observation.object->depth[v] : nullptr,
+             fields.masks[v]);
   }
   return fields;
 }
@@ -144,18 +145,19 @@ HandFitProblem::HandFitProblem(const HandModel& model, const StereoCameras& came
       fields_(fields) {
   n_ = model.tree.num_joints();
   num_residuals_ = 3 * kNumFingers;
-  for (const MaskField& field : fields_) {
+  for (const MaskField& field : fields_.masks) {
     if (field.mask == nullptr) continue;
-    num_residuals_ += static_cast<int>(model.balls.size() + field.samples.size()) + 1;
+    num_residuals_ += static_cast<int>(model.balls.size() + field.samples.size());
   }
   num_residuals_ +=
-      6 + 2 * n_ + static_cast<int>(model.coupled.size() + model.neighbours.size()) + 3;
+      3 + 1 + 6 + 2 * n_ + static_cast<int>(model.coupled.size() + model.neighbours.size()) + 3;
   node_motion_.assign(model.tree.nodes.size(), {});
   for (std::size_t b = 0; b < model.tree.nodes.size(); ++b) {
     for (int a = static_cast<int>(b); a >= 0; a = model.tree.nodes[a].parent) {
       if (model.tree.nodes[a].joint >= 0) node_motion_[b].push_back(a);
     }
   }
+  q_predicted_ = last.q;
   scaled_ = model.tree;
   axis_W_.resize(scaled_.nodes.size());
   origin_W_.resize(scaled_.nodes.size());
@@ -204,13 +206,15 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
     p_W_[i] = Point(fit, model_.balls[i].node, model_.balls[i].p_B);
   }
   for (int v = 0; v < 2; ++v) {
-    if (fields_[v].mask == nullptr) continue;
+    if (fields_.masks[v].mask == nullptr) continue;
     AddBalls(fit, v, row, r, J);
     row += static_cast<int>(model_.balls.size());
     AddOutline(fit, v, row, r, J);
-    row += static_cast<int>(fields_[v].samples.size());
-    AddSleeve(fit, v, row++, r, J);
+    row += static_cast<int>(fields_.masks[v].samples.size());
   }
+  AddSleeve(fit, row, r, J);
+  row += 3;
+  AddWrist(fit, row++, r, J);
   // Motion.
   if (!first_) {
     const Eigen::Vector3d turn = LogRotation(
@@ -225,8 +229,12 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
   row += 6;
   for (int j = 0; j < n_; ++j, row += 2) {
     if (!first_) {
-      r[row] = (fit.q[j] - last_.q[j]) / options_.joint_sigma;
-      if (J != nullptr) (*J)(row, 6 + j) = 1 / options_.joint_sigma;
+      const bool seen = observation_.tip_W[model_.finger[j]].has_value();
+      const double sigma = seen                  ? options_.joint_sigma
+                           : model_.abduction[j] ? options_.unseen_aside_sigma
+                                                 : options_.unseen_sigma;
+      r[row] = (fit.q[j] - q_predicted_[j]) / sigma;
+      if (J != nullptr) (*J)(row, 6 + j) = 1 / sigma;
     }
     r[row + 1] = (fit.q[j] - model_.rest[j]) / model_.rest_sigma[j];
     if (J != nullptr) (*J)(row + 1, 6 + j) = 1 / model_.rest_sigma[j];
@@ -269,7 +277,7 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
 void HandFitProblem::AddBalls(const HandFit& fit, int view, int row, Eigen::VectorXd& r,
                               Eigen::MatrixXd* J) {
   const CameraModel& camera = cameras_.view(view);
-  const MaskField& field = fields_[view];
+  const MaskField& field = fields_.masks[view];
   const ObjectDepth* object =
       observation_.object != nullptr ? &observation_.object->depth[view] : nullptr;
   for (std::size_t i = 0; i < model_.balls.size(); ++i, ++row) {
@@ -292,7 +300,7 @@ void HandFitProblem::AddBalls(const HandFit& fit, int view, int row, Eigen::Vect
 
 void HandFitProblem::AddOutline(const HandFit& fit, int view, int row, Eigen::VectorXd& r,
                                 Eigen::MatrixXd* J) {
-  const MaskField& field = fields_[view];
+  const MaskField& field = fields_.masks[view];
   for (std::size_t k = 0; k < field.samples.size(); ++k, ++row) {
     const Eigen::Vector2f sample = field.samples[k].cast<float>();
     distance_ = ((u_ - sample.x()).square() + (v_ - sample.y()).square()).sqrt() - radius_;
@@ -310,30 +318,60 @@ void HandFitProblem::AddOutline(const HandFit& fit, int view, int row, Eigen::Ve
   }
 }
 
-void HandFitProblem::AddSleeve(const HandFit& fit, int view, int row, Eigen::VectorXd& r,
-                               Eigen::MatrixXd* J) {
-  if (!model_.sleeve_x) return;
-  constexpr double kReach = 20, kBorder = 12;  // px
+std::optional<HandFitProblem::Sleeve> HandFitProblem::SleeveIn(int view,
+                                                               const Eigen::Vector3d& p_W) const {
+  constexpr double kBorder = 12;  // px
   const CameraModel& camera = cameras_.view(view);
-  const MaskField& field = fields_[view];
-  const Eigen::Vector3d p_W = fit.X_WH * Eigen::Vector3d(fit.scale * *model_.sleeve_x, 0, 0);
+  const MaskField& field = fields_.masks[view];
+  if (field.mask == nullptr) return std::nullopt;
   Eigen::Matrix<double, 2, 3> J_pixel;
   const auto pixel = Project(camera, p_W, &J_pixel);
-  if (!pixel) return;
+  if (!pixel) return std::nullopt;
   // The picture's border cuts the mask as a sleeve does.
   if (pixel->x() < kBorder || pixel->y() < kBorder || pixel->x() > camera.width - 1 - kBorder ||
       pixel->y() > camera.height - 1 - kBorder) {
-    return;
+    return std::nullopt;
   }
-  if (observation_.object != nullptr && observation_.object->depth[view].Covers(*pixel)) return;
+  if (observation_.object != nullptr && observation_.object->depth[view].Covers(*pixel)) {
+    return std::nullopt;
+  }
   Eigen::Vector2d slope_out, slope_in;
   const double d = DistanceAt(*field.mask, field.outside, *pixel, slope_out) -
                    DistanceAt(*field.mask, field.inside, *pixel, slope_in);
-  double gain;
-  r[row] = Saturate(d, kReach, options_.sleeve_sigma_px, gain);
-  if (J != nullptr) {
-    AddRow(fit, 0, p_W, gain * J_pixel.transpose() * (slope_out - slope_in), row, *J);
+  return Sleeve{d, J_pixel.transpose() * (slope_out - slope_in)};
+}
+
+void HandFitProblem::AddSleeve(const HandFit& fit, int row, Eigen::VectorXd& r,
+                               Eigen::MatrixXd* J) {
+  if (!model_.sleeve_x) return;
+  constexpr double kReach = 20;  // px
+  const Eigen::Vector3d p_W = fit.X_WH * Eigen::Vector3d(fit.scale * *model_.sleeve_x, 0, 0);
+  std::array<std::optional<Sleeve>, 2> sleeve;
+  for (int v = 0; v < 2; ++v) {
+    sleeve[v] = SleeveIn(v, p_W);
+    if (!sleeve[v]) continue;
+    double gain;
+    r[row + v] = Saturate(sleeve[v]->distance, kReach, options_.sleeve_sigma_px, gain);
+    if (J != nullptr) AddRow(fit, 0, p_W, gain * sleeve[v]->slope_W, row + v, *J);
   }
+  if (!sleeve[0] || !sleeve[1]) return;
+  double gain;
+  r[row + 2] = Saturate(sleeve[0]->distance - sleeve[1]->distance, kReach,
+                        options_.sleeve_depth_sigma_px, gain);
+  if (J != nullptr) {
+    AddRow(fit, 0, p_W, gain * (sleeve[0]->slope_W - sleeve[1]->slope_W), row + 2, *J);
+  }
+}
+
+void HandFitProblem::AddWrist(const HandFit& fit, int row, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
+  if (!fields_.wrist) return;
+  const Pose& X_WC = cameras_.left.X_WC;
+  const Eigen::Vector3d forward = X_WC.linear().col(2), p_WH = fit.X_WH.translation();
+  double gain;
+  r[row] = Saturate(forward.dot(p_WH - X_WC.translation()) - fields_.wrist->depth,
+                    options_.wrist_depth_reach,
+                    std::hypot(fields_.wrist->sigma, options_.wrist_depth_sigma), gain);
+  if (J != nullptr) AddRow(fit, 0, p_WH, gain * forward, row, *J);
 }
 
 void HandFitProblem::AddRow(const HandFit& fit, int node, const Eigen::Vector3d& p_W,

@@ -4,9 +4,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "vision/hand_pose.h"
+#include "vision/wrist_depth.h"
 
 namespace springgrasp {
 
@@ -24,7 +26,10 @@ MaskField MakeField(const HandMask& mask, int wanted, const Eigen::Vector2d& mid
                     double reach_px);
 
 // What one frame's pictures ask, shared by all its fits.
-using HandFields = std::array<MaskField, 2>;  // left, right; mask null where nothing was seen
+struct HandFields {
+  std::array<MaskField, 2> masks;  // left, right; mask null where nothing was seen
+  std::optional<WristDepth> wrist;
+};
 HandFields MakeFields(const StereoCameras& cameras, const HandObservation& observation,
                       const HandPoseOptions& options);
 
@@ -33,7 +38,9 @@ HandFields MakeFields(const StereoCameras& cameras, const HandObservation& obser
 //   tips          3 per finger    (tip - seen) / sigma
 //   balls         1 per view      distance outside the mask
 //   outline       1 per view      signed distance from the outline of the balls
-//   sleeve        1 per view      where the bare forearm ends, signed distance from the mask's edge
+//   sleeve        3               where the bare forearm ends, signed distance from the mask's edge
+//                                 in each view, and what the views differ by, which tells depth
+//   wrist         1               depth of the origin of H
 //   motion        6               deviation from the predicted pose
 //   joints        2 n             deviation from the last and from the resting posture
 //   couplings     1 each          DIP - 2/3 PIP; difference of neighbouring fingers
@@ -55,6 +62,8 @@ class HandFitProblem {
     return x;
   }
 
+  // Where the joints should be now; without it, where they were.
+  void SetPredictedJoints(const Eigen::VectorXd& q) { q_predicted_ = q; }
   void SetStart(const HandFit& fit) { R_start_ = fit.X_WH.linear(); }
 
   HandFit Result(const Eigen::VectorXd& x) const;
@@ -70,13 +79,21 @@ class HandFitProblem {
               const Eigen::Vector3d& slope_W, int row, Eigen::MatrixXd& J) const;
   void AddBalls(const HandFit& fit, int view, int row, Eigen::VectorXd& r, Eigen::MatrixXd* J);
   void AddOutline(const HandFit& fit, int view, int row, Eigen::VectorXd& r, Eigen::MatrixXd* J);
-  void AddSleeve(const HandFit& fit, int view, int row, Eigen::VectorXd& r, Eigen::MatrixXd* J);
+  void AddSleeve(const HandFit& fit, int row, Eigen::VectorXd& r, Eigen::MatrixXd* J);
+  void AddWrist(const HandFit& fit, int row, Eigen::VectorXd& r, Eigen::MatrixXd* J);
+  // Of the point p_W on the forearm's axis: signed distance off the mask's edge, px, and its slope.
+  struct Sleeve {
+    double distance;
+    Eigen::Vector3d slope_W;
+  };
+  std::optional<Sleeve> SleeveIn(int view, const Eigen::Vector3d& p_W) const;
 
   const HandModel& model_;
   const StereoCameras& cameras_;
   const HandObservation& observation_;
   const HandFit& last_;
   Pose X_predicted_;
+  Eigen::VectorXd q_predicted_;
   bool fit_scale_, first_;
   const HandPoseOptions& options_;
   int n_ = 0, num_residuals_ = 0;

@@ -1,6 +1,7 @@
 #include "vision/hand_follower.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -8,6 +9,11 @@
 #include "vision/skin_mask.h"
 
 namespace springgrasp {
+namespace {
+
+constexpr int kLongAgo = 1000;  // frames
+
+}  // namespace
 
 HandFollower::HandFollower(const KinematicTree& tree, const StereoCameras& cameras,
                            const HandPoseOptions& options,
@@ -54,6 +60,7 @@ std::optional<TrackedFrame> HandFollower::Start(FingertipTracker& tracker, const
   tracker.Relabel(best->order, PalmOf(best->fit));
   fit_ = best->fit;
   fresh_ = true;
+  back_since_.fill(kLongAgo);
   return tracked;
 }
 
@@ -65,12 +72,19 @@ const HandFit* HandFollower::Follow(const StereoFrame& frame, const TrackedFrame
     fit_ = StartHandFit(model_, cameras_, observation, options_);
     return fit_ ? &*fit_ : nullptr;
   }
-  const Pose before = fit_->X_WH;
+  fit_before_ = fit_;
+  step_before_ = step_;
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (!tracked.fingers[f].p_W) {
+      ++lost_for_[f];
+      back_since_[f] = 0;
+    } else {
+      lost_for_[f] = 0;
+      ++back_since_[f];
+    }
+  }
   fit_ = UpdateHandFit(model_, cameras_, observation, *fit_, step_, fit_scale, options_);
-  step_.position = 0.5 * step_.position + 0.5 * (fit_->X_WH.translation() - before.translation());
-  step_.rotation = 0.5 * step_.rotation +
-                   0.5 * LogRotation(Eigen::Quaterniond(
-                             Eigen::Matrix3d(fit_->X_WH.linear() * before.linear().transpose())));
+  Advance();
   if (fit_scale) {
     CountForearm();
   } else if (forearm_frames_ > 0) {
@@ -87,6 +101,106 @@ const HandFit* HandFollower::Follow(const StereoFrame& frame, const TrackedFrame
   return &*fit_;
 }
 
+// What is to be expected of the next frame, from the last one's fit to this one's.
+void HandFollower::Advance() {
+  constexpr double kComesToRest = 0.93;  // of its speed per frame
+  const Pose& before = fit_before_->X_WH;
+  step_.position =
+      0.5 * step_before_.position + 0.5 * (fit_->X_WH.translation() - before.translation());
+  step_.rotation = 0.5 * step_before_.rotation +
+                   0.5 * LogRotation(Eigen::Quaterniond(
+                             Eigen::Matrix3d(fit_->X_WH.linear() * before.linear().transpose())));
+  // A hidden finger goes on as it did, and comes to rest.
+  step_.joints = step_before_.joints;
+  if (step_.joints.size() == 0) step_.joints.setZero(fit_->q.size());
+  for (int j = 0; j < static_cast<int>(fit_->q.size()); ++j) {
+    const bool seen = lost_for_[model_.finger[j]] == 0;
+    step_.joints[j] = seen ? 0.7 * step_.joints[j] + 0.3 * (fit_->q[j] - fit_before_->q[j])
+                           : kComesToRest * step_.joints[j];
+  }
+}
+
+HandFit HandFollower::Refit(const HandObservation& seen, const PerFinger<int>& order,
+                            const HandFit& last, const HandStep& step,
+                            const HandPoseOptions& options) const {
+  HandObservation observation = seen;
+  for (int f = 0; f < kNumFingers; ++f) {
+    observation.tip_W[f] = seen.tip_W[order[f]];
+    observation.confidence[f] = seen.confidence[order[f]];
+  }
+  return UpdateHandFit(model_, cameras_, observation, last, step, false, options);
+}
+
+// Of fingers that were lost together some come back first, and which ones only the whole hand
+// tells. They come in the order in which they lie across it.
+HandFollower::Returning HandFollower::LabelsOfReturning(const HandObservation& seen) {
+  constexpr int kSettled = 4, kAwaiting = 15;  // frames; while others of them are still lost
+  constexpr double kBetter = 8, kSure = 8;     // of the cost
+  const PerFinger<int> as_labelled = {0, 1, 2, 3, 4};
+  Returning result{as_labelled, {}};
+  const bool awaiting =
+      std::any_of(lost_for_.begin() + kIndex, lost_for_.end(), [](int lost) { return lost > 0; });
+  std::vector<int> fingers, caps, unseen;  // that were lost; of them those seen and those not
+  for (int f = kIndex; f < kNumFingers; ++f) {
+    if (back_since_[f] > (awaiting ? kAwaiting : kSettled)) continue;
+    fingers.push_back(f);
+    (seen.tip_W[f] ? caps : unseen).push_back(f);
+  }
+  if (!fit_before_ || caps.empty() || fingers.size() < 2) return result;
+  // One or two caps of three or four may be anybody's: the fit follows them wherever they are put.
+  if (fingers.size() >= 3 && caps.size() <= 2) {
+    HandObservation without = seen;
+    for (const int f : caps) {
+      without.tip_W[f].reset();
+      result.unsure[f] = true;
+    }
+    fit_ = Refit(without, as_labelled, *fit_before_, step_before_, options_);
+    Advance();
+    return result;
+  }
+  const Eigen::Vector3d across = fit_->X_WH.linear().col(1);
+  const double side =
+      across.dot(FittedTip(model_, *fit_, kIndex) - FittedTip(model_, *fit_, kPinkie));
+  std::sort(caps.begin(), caps.end(), [&](int a, int b) {
+    return side * across.dot(*seen.tip_W[a]) > side * across.dot(*seen.tip_W[b]);
+  });
+  struct Labelling {
+    PerFinger<int> order;
+    HandFit fit;
+  };
+  std::vector<Labelling> labellings = {
+      {as_labelled, Refit(seen, as_labelled, *fit_before_, step_before_, options_)}};
+  const auto n = static_cast<unsigned>(fingers.size());
+  for (unsigned chosen = 0; chosen < 1U << n; ++chosen) {
+    if (std::popcount(chosen) != static_cast<int>(caps.size())) continue;
+    PerFinger<int> order = as_labelled;
+    std::size_t next_cap = 0, next_unseen = 0;
+    for (unsigned i = 0; i < n; ++i) {
+      order[fingers[i]] = chosen >> i & 1 ? caps[next_cap++] : unseen[next_unseen++];
+    }
+    if (order == as_labelled) continue;
+    labellings.push_back({order, Refit(seen, order, *fit_before_, step_before_, options_)});
+  }
+  std::size_t best = 0;
+  double least = labellings[0].fit.cost - kBetter;
+  for (std::size_t i = 1; i < labellings.size(); ++i) {
+    if (labellings[i].fit.cost < least) least = labellings[i].fit.cost, best = i;
+  }
+  if (best != 0) {
+    fit_ = labellings[best].fit;
+    Advance();
+  }
+  result.order = labellings[best].order;
+  for (const Labelling& other : labellings) {
+    if (other.fit.cost > labellings[best].fit.cost + kSure) continue;
+    for (const int f : fingers) {
+      const int cap = result.order[f];
+      if (seen.tip_W[cap] && other.order[f] != cap) result.unsure[f] = true;
+    }
+  }
+  return result;
+}
+
 std::optional<PerFinger<int>> HandFollower::BetterLabels(const StereoFrame& frame,
                                                          const FingertipTracker& tracker,
                                                          TrackedFrame& tracked) {
@@ -94,7 +208,29 @@ std::optional<PerFinger<int>> HandFollower::BetterLabels(const StereoFrame& fram
   constexpr int kLong = 2;          // frames
   constexpr double kFar = 20;       // of the cost
   constexpr double kFree = 10;      // as much as usual may pose and joints change
-  if (!fit_ || fit_->tips_used < 3 || fit_->tip_rms < kUnfit) {
+  if (!fit_) return std::nullopt;
+  const auto take_over = [&](const PerFinger<int>& order) {
+    const TrackedFrame as_found = tracked;
+    const PerFinger<int> lost_for = lost_for_, back_since = back_since_;
+    for (int f = 0; f < kNumFingers; ++f) {
+      tracked.fingers[f] = as_found.fingers[order[f]];
+      lost_for_[f] = lost_for[order[f]];
+      back_since_[f] = back_since[order[f]];
+    }
+    return order;
+  };
+  const bool returning = std::any_of(back_since_.begin() + kIndex, back_since_.end(),
+                                     [](int since) { return 1 <= since && since <= 4; });
+  if (returning) {
+    const Returning found = LabelsOfReturning(Observe(frame, tracked, tracker));
+    const bool changed = found.order != PerFinger<int>{0, 1, 2, 3, 4};
+    if (changed) take_over(found.order);
+    for (int f = 0; f < kNumFingers; ++f) {
+      if (found.unsure[f]) tracked.fingers[f] = TrackedFinger();
+    }
+    if (changed) return found.order;
+  }
+  if (fit_->tips_used < 3 || fit_->tip_rms < kUnfit) {
     unfit_frames_ = 0;
     return std::nullopt;
   }
@@ -105,16 +241,8 @@ std::optional<PerFinger<int>> HandFollower::BetterLabels(const StereoFrame& fram
   free.turn_sigma *= kFree;
   free.joint_sigma *= kFree;
   const HandObservation seen = Observe(frame, tracked, tracker);
-  const auto refit = [&](const PerFinger<int>& order) {
-    HandObservation observation = seen;
-    for (int f = 0; f < kNumFingers; ++f) {
-      observation.tip_W[f] = seen.tip_W[order[f]];
-      observation.confidence[f] = seen.confidence[order[f]];
-    }
-    return UpdateHandFit(model_, cameras_, observation, *fit_, {}, false, free);
-  };
   PerFinger<int> best = {0, 1, 2, 3, 4};
-  HandFit fit = refit(best);
+  HandFit fit = Refit(seen, best, *fit_, {}, free);
   const double rms = fit.tip_rms;
   double cost = fit.cost - kFar;
   bool found = false;
@@ -123,7 +251,7 @@ std::optional<PerFinger<int>> HandFollower::BetterLabels(const StereoFrame& fram
       PerFinger<int> order = {0, 1, 2, 3, 4};
       std::swap(order[f], order[g]);
       if (!seen.tip_W[f] && !seen.tip_W[g]) continue;
-      const HandFit other = refit(order);
+      const HandFit other = Refit(seen, order, *fit_, {}, free);
       if (other.cost >= cost || other.tip_rms > 0.5 * rms) continue;
       cost = other.cost;
       fit = other;
@@ -141,9 +269,7 @@ std::optional<PerFinger<int>> HandFollower::BetterLabels(const StereoFrame& fram
     return std::nullopt;
   }
   fit_ = fit;
-  const TrackedFrame as_found = tracked;
-  for (int f = 0; f < kNumFingers; ++f) tracked.fingers[f] = as_found.fingers[best[f]];
-  return best;
+  return take_over(best);
 }
 
 HandObservation HandFollower::Observe(const StereoFrame& frame, const TrackedFrame& tracked,

@@ -29,8 +29,10 @@ class HandFollower {
   const HandFit* Follow(const StereoFrame& frame, const TrackedFrame& tracked,
                         const FingertipTracker& tracker, bool fit_scale);
 
-  // After Follow: labels with which the hand fits the frame far better (finger f's cap is the one
-  // that order[f] has), where it has not fitted for some frames. Taken over into fit and `tracked`.
+  // After Follow: labels with which the hand fits the frame better (finger f's cap is the one that
+  // order[f] has), where it has not fitted for some frames, or for fingers that come back together.
+  // Taken over into fit and `tracked`; where it is not sure yet whose a cap is, no finger is
+  // reported.
   std::optional<PerFinger<int>> BetterLabels(const StereoFrame& frame,
                                              const FingertipTracker& tracker,
                                              TrackedFrame& tracked);
@@ -43,6 +45,15 @@ class HandFollower {
   bool Segment(int v, const cv::Mat& bgr, const TrackedFrame& tracked,
                const FingertipTracker& tracker);
   std::vector<PerFinger<int>> LikelyLabels(const TrackedFrame& tracked) const;
+  // Labels as for BetterLabels, and fingers of which it is not sure that the cap is theirs.
+  struct Returning {
+    PerFinger<int> order;
+    PerFinger<bool> unsure;
+  };
+  void Advance();
+  Returning LabelsOfReturning(const HandObservation& seen);
+  HandFit Refit(const HandObservation& seen, const PerFinger<int>& order, const HandFit& last,
+                const HandStep& step, const HandPoseOptions& options) const;
   void CountForearm();
 
   HandModel model_;
@@ -53,6 +64,10 @@ class HandFollower {
   HandPoseOptions options_;
   std::array<HandMask, 2> masks_;
   std::array<WhiteBalance, 2> white_balance_;  // since the skin was learned
+  PerFinger<int> lost_for_ = {};    // frames
+  PerFinger<int> back_since_ = {};  // frames since a lost finger was seen again; large: long ago
+  std::optional<HandFit> fit_before_;  // of the last frame
+  HandStep step_before_;
   int unfit_frames_ = 0;                       // for how long the hand has not fitted its tips
   std::optional<KnownObject> object_;
   std::optional<HandFit> fit_;

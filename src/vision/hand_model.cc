@@ -81,11 +81,21 @@ HandModel MakeHandModel(const KinematicTree& tree, const Eigen::VectorXd& rest) 
   // Forearm: explains skin beyond the wrist. x of H points to the middle knuckle.
   for (int i = 1; i <= 5; ++i) model.balls.push_back({0, {-0.02 * i, 0, 0}, 0.027, true});
 
+  model.finger.assign(static_cast<std::size_t>(n), kThumb);
+  model.abduction.assign(static_cast<std::size_t>(n), false);
+  model.bends = model.abduction;
+  for (int f = 0; f < kNumFingers; ++f) {
+    for (int b = tree.frames[model.tip[f]].node; b >= 0; b = tree.nodes[b].parent) {
+      if (tree.nodes[b].joint >= 0) model.finger[tree.nodes[b].joint] = f;
+    }
+  }
   model.rest.resize(n);
   model.rest_sigma.resize(n);
   for (int j = 0; j < n; ++j) {
     const std::string& name = tree.joint_names[j];
     const bool abduction = Contains(name, "abduction");
+    model.abduction[j] = abduction;
+    model.bends[j] = !abduction && !Contains(name, "cmc");
     model.rest[j] = abduction ? 0
                               : tree.lower[j] + (tree.upper[j] - tree.lower[j]) *
                                                     (Contains(name, "cmc") ? 0.5 : 0.2);

@@ -25,6 +25,9 @@ struct HandModel {
   std::vector<HandBall> balls;  // fingers, palm, and the beginning of the forearm
   Eigen::VectorXd rest;         // rad: where joints are when nothing tells them
   Eigen::VectorXd rest_sigma;   // rad: how surely
+  std::vector<int> finger;      // whose joint it is
+  std::vector<bool> abduction;  // of a finger, to its neighbours' side
+  std::vector<bool> bends;      // at a knuckle or within a finger
   // Pairs (PIP, DIP): the end joint follows the middle one by two thirds.
   std::vector<std::pair<int, int>> coupled;
   // The same joint of neighbouring fingers (MCP, PIP; index to pinkie): they bend alike, loosely.

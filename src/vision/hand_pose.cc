@@ -88,6 +88,22 @@ Eigen::Vector3d FittedAxis(const HandModel& model, const HandFit& fit, int finge
          (X_HF.linear() * frame.X_BF.linear().transpose() * frame.X_BF.translation().normalized());
 }
 
+std::array<Eigen::Vector3d, kArcPlaces> BendingArc(const HandModel& model, const HandFit& fit,
+                                                   int finger) {
+  constexpr double kStraighter = 0.6, kMoreBent = 1.2;  // rad, at the knuckle
+  std::array<Eigen::Vector3d, kArcPlaces> arc;
+  HandFit bent = fit;
+  for (int i = 0; i < kArcPlaces; ++i) {
+    const double angle = -kStraighter + (kStraighter + kMoreBent) * i / (kArcPlaces - 1);
+    for (int j = 0; j < static_cast<int>(fit.q.size()); ++j) {
+      if (model.finger[j] != finger || !model.bends[j]) continue;
+      bent.q[j] = std::clamp(fit.q[j] + angle, model.tree.lower[j], model.tree.upper[j]);
+    }
+    arc[i] = FittedTip(model, bent, finger);
+  }
+  return arc;
+}
+
 Eigen::Vector3d PalmOf(const HandFit& fit) {
   return fit.X_WH * Eigen::Vector3d(0.045 * fit.scale, 0, 0);
 }
@@ -139,6 +155,23 @@ std::vector<HandFit> LikelyHands(const HandModel& model, const StereoCameras& ca
   return hands;
 }
 
+// A fit found without the wrist's depth, settled with it. Its cost stays comparable: without.
+HandFit WithDepth(const HandModel& model, const StereoCameras& cameras,
+                  const HandObservation& observation, HandFields fields, const HandFit& found,
+                  const HandPoseOptions& options) {
+  constexpr int kRounds = 2;
+  HandFit any;
+  any.q = model.rest;
+  HandFit fit = found;
+  for (int i = 0; i < kRounds; ++i) {
+    fields.wrist = MeasureWristDepth(model, cameras, observation, fit);
+    HandFitProblem problem(model, cameras, observation, fields, any, any.X_WH, true, true, options);
+    fit = Solve(problem, model, fit, 2 * options.start_iterations);
+  }
+  fit.cost = found.cost;
+  return fit;
+}
+
 }  // namespace
 
 std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras& cameras,
@@ -171,7 +204,10 @@ std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras&
     const HandFit fit = Solve(problem, model, starts[i], 2 * options.start_iterations);
     if (!best || fit.cost < best->cost) best = fit;
   }
-  if (best) JudgeTips(model, observation, *best);
+  if (best) {
+    best = WithDepth(model, cameras, observation, fields, *best, options);
+    JudgeTips(model, observation, *best);
+  }
   return best;
 }
 
@@ -214,11 +250,16 @@ HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
     JudgeTips(model, observation, fit);
     return fit;
   }
-  const HandFields fields = MakeFields(cameras, observation, options);
-  HandFitProblem problem(model, cameras, observation, fields, last, X_predicted, fit_scale, false,
-                         options);
   HandFit start = last;
   start.X_WH = X_predicted;
+  if (moved.joints.size() == last.q.size()) {
+    start.q = (last.q + moved.joints).cwiseMax(model.tree.lower).cwiseMin(model.tree.upper);
+  }
+  HandFields fields = MakeFields(cameras, observation, options);
+  fields.wrist = MeasureWristDepth(model, cameras, observation, start);
+  HandFitProblem problem(model, cameras, observation, fields, last, X_predicted, fit_scale, false,
+                         options);
+  problem.SetPredictedJoints(start.q);
   HandFit fit = Solve(problem, model, start, options.iterations);
   if (tips >= 3 && last.frame % kWayOutEvery == 0) {
     fit =

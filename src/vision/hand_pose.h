@@ -19,21 +19,26 @@ namespace springgrasp {
 
 // Tuned on the four grasps of experiments/tracking, clean and moderate, seeds 31 to 33.
 struct HandPoseOptions {
-  double tip_sigma = 0.003;        // m, of a fully trusted fingertip
-  double ball_sigma_px = 5;        // of a ball outside the mask
-  double skin_sigma_px = 4;        // of the mask's outline off that of the balls
-  double sleeve_sigma_px = 4;      // of the end of the bare forearm off the mask's edge
-  double mask_reach_px = 7;        // beyond, a mask residual says no more: objects hide the hand
-  double neighbour_sigma = 0.15;   // rad, between the same joint of two neighbouring fingers
-  double first_palm_sigma = 0.35;  // of 1 - cosine of palm and line of sight: 50 degrees
-  double palm_sigma = 0.4;         // the same after the first frame
-  double pose_sigma = 0.009;       // m per frame, about the predicted position
-  double turn_sigma = 0.09;        // rad per frame
-  double joint_sigma = 0.15;       // rad per frame
-  double mask_step = 0.2;          // resolution of the masks, in radii of a cap
-  int mask_samples = 80;           // on the outline, per view
-  int iterations = 8;              // Levenberg-Marquardt, per frame
-  int start_iterations = 25;       // of each start in the first frame
+  double tip_sigma = 0.003;            // m, of a fully trusted fingertip
+  double ball_sigma_px = 5;            // of a ball outside the mask
+  double skin_sigma_px = 4;            // of the mask's outline off that of the balls
+  double sleeve_sigma_px = 4;          // of the end of the bare forearm off the mask's edge
+  double sleeve_depth_sigma_px = 1.2;  // of the difference of that between the views
+  double mask_reach_px = 7;          // beyond, a mask residual says no more: objects hide the hand
+  double wrist_depth_sigma = 0.004;  // m, beside that of the measurement
+  double wrist_depth_reach = 0.03;   // m; beyond, a measured depth says no more
+  double neighbour_sigma = 0.15;     // rad, between the same joint of two neighbouring fingers
+  double first_palm_sigma = 0.35;    // of 1 - cosine of palm and line of sight: 50 degrees
+  double palm_sigma = 0.4;           // the same after the first frame
+  double pose_sigma = 0.009;         // m per frame, about the predicted position
+  double turn_sigma = 0.09;          // rad per frame
+  double joint_sigma = 0.15;         // rad per frame
+  double unseen_sigma = 0.06;        // the same of a finger whose tip is not seen
+  double unseen_aside_sigma = 0.01;  // and of its abduction
+  double mask_step = 0.2;            // resolution of the masks, in radii of a cap
+  int mask_samples = 80;             // on the outline, per view
+  int iterations = 8;                // Levenberg-Marquardt, per frame
+  int start_iterations = 25;         // of each start in the first frame
 };
 
 // What one stereo frame says.
@@ -68,6 +73,7 @@ std::optional<HandFit> StartHandFit(const HandModel& model, const StereoCameras&
 struct HandStep {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m, in W
   Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  // rad, in W
+  Eigen::VectorXd joints;                              // rad; empty: none
 };
 HandFit UpdateHandFit(const HandModel& model, const StereoCameras& cameras,
                       const HandObservation& observation, const HandFit& last,
@@ -82,6 +88,12 @@ std::optional<HandFit> RestartHandFit(const HandModel& model, const StereoCamera
 // Fingertip and last bone's direction (towards the tip) of a fit, in W: hints for the tracker.
 Eigen::Vector3d FittedTip(const HandModel& model, const HandFit& fit, int finger);
 Eigen::Vector3d FittedAxis(const HandModel& model, const HandFit& fit, int finger);
+
+// Where a fingertip gets in W by bending the finger as fingers bend, from straighter than it is to
+// more bent: places about 10 mm apart. Not for the thumb.
+inline constexpr int kArcPlaces = 15;
+std::array<Eigen::Vector3d, kArcPlaces> BendingArc(const HandModel& model, const HandFit& fit,
+                                                   int finger);
 
 // The palm's middle in W: half way from the wrist to the knuckles.
 Eigen::Vector3d PalmOf(const HandFit& fit);

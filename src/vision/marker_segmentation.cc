@@ -35,6 +35,57 @@ std::optional<double> HandCost(const std::array<const MarkerPair*, kNumFingers>&
   return cost + spread;  // ten distances of decimetres: about 1, as the radii
 }
 
+// Parts a region into `count` by k-means, begun at equal steps along its longest extent.
+void PartBlob(const cv::Mat& labels, int label, const cv::Rect& region, const MarkerBlob& whole,
+              int count, std::vector<MarkerBlob>& blobs) {
+  constexpr int kMost = 5, kRounds = 6;
+  count = std::min(count, kMost);
+  const cv::Rect box = whole.box - region.tl();
+  const auto each = [&](auto&& visit) {
+    for (int y = box.y; y < box.y + box.height; ++y) {
+      const int* row = labels.ptr<int>(y);
+      for (int x = box.x; x < box.x + box.width; ++x) {
+        if (row[x] == label) visit(Eigen::Vector2d(x + region.x, y + region.y));
+      }
+    }
+  };
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  each([&](const Eigen::Vector2d& at) {
+    spread += (at - whole.centre) * (at - whole.centre).transpose() / whole.area;
+  });
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(spread);
+  const Eigen::Vector2d along = solver.eigenvectors().col(1);
+  // A rod of that spread is the square root of twelve deviations long.
+  const double length = std::sqrt(12 * solver.eigenvalues()[1]);
+  std::array<MarkerBlob, kMost> parts;
+  for (int k = 0; k < count; ++k) {
+    parts[k].centre = whole.centre + along * length * ((k + 0.5) / count - 0.5);
+  }
+  for (int round = 0; round < kRounds; ++round) {
+    std::array<Eigen::Vector2d, kMost> sum;
+    sum.fill(Eigen::Vector2d::Zero());
+    std::array<cv::Rect, kMost> boxes = {};
+    std::array<int, kMost> area = {};
+    each([&](const Eigen::Vector2d& at) {
+      int nearest = 0;
+      for (int k = 1; k < count; ++k) {
+        if ((at - parts[k].centre).squaredNorm() < (at - parts[nearest].centre).squaredNorm()) {
+          nearest = k;
+        }
+      }
+      sum[nearest] += at;
+      ++area[nearest];
+      const cv::Rect pixel(static_cast<int>(at.x()), static_cast<int>(at.y()), 1, 1);
+      boxes[nearest] = boxes[nearest].empty() ? pixel : boxes[nearest] | pixel;
+    });
+    for (int k = 0; k < count; ++k) {
+      if (area[k] == 0) continue;
+      parts[k] = {sum[k] / area[k], static_cast<double>(area[k]), boxes[k]};
+    }
+  }
+  blobs.insert(blobs.end(), parts.begin(), parts.begin() + count);
+}
+
 }  // namespace
 
 std::vector<MarkerBlob> SegmentMarkers(const cv::Mat& likelihood, double min_area,
@@ -46,7 +97,7 @@ std::vector<MarkerBlob> SegmentMarkers(const cv::Mat& likelihood, double min_are
 }
 
 void SegmentMarkers(const cv::Mat& likelihood, double min_area, cv::Rect region,
-                    MarkerScratch& scratch, std::vector<MarkerBlob>& blobs) {
+                    MarkerScratch& scratch, std::vector<MarkerBlob>& blobs, double cap_area) {
   if (region.empty()) region = {0, 0, likelihood.cols, likelihood.rows};
   if (scratch.binary.size() != likelihood.size()) {
     scratch.binary.create(likelihood.size(), CV_8UC1);
@@ -66,7 +117,12 @@ void SegmentMarkers(const cv::Mat& likelihood, double min_area, cv::Rect region,
     blob.box = {stats.at<int>(i, cv::CC_STAT_LEFT) + region.x,
                 stats.at<int>(i, cv::CC_STAT_TOP) + region.y, stats.at<int>(i, cv::CC_STAT_WIDTH),
                 stats.at<int>(i, cv::CC_STAT_HEIGHT)};
-    blobs.push_back(blob);
+    const int caps = cap_area > 0 ? static_cast<int>(std::lround(blob.area / cap_area)) : 1;
+    if (caps >= 2) {
+      PartBlob(labels, i, region, blob, caps, blobs);
+    } else {
+      blobs.push_back(blob);
+    }
   }
   std::sort(blobs.begin(), blobs.end(), [](const MarkerBlob& a, const MarkerBlob& b) {
     return std::tie(b.area, a.box.y, a.box.x) < std::tie(a.area, b.box.y, b.box.x);

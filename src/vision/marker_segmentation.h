@@ -23,13 +23,14 @@ struct MarkerBlob {
 // `min_area` px, largest first.
 std::vector<MarkerBlob> SegmentMarkers(const cv::Mat& likelihood, double min_area,
                                        cv::Rect region = {});
-// The same into memory that is kept from frame to frame.
+// The same into memory that is kept from frame to frame. With `cap_area` (px, of one cap) regions of
+// several caps that touch are parted into that many, at most five.
 struct MarkerScratch {
   cv::Mat binary, labels;  // as large as the largest picture so far
   cv::Mat stats, centroids;
 };
 void SegmentMarkers(const cv::Mat& likelihood, double min_area, cv::Rect region,
-                    MarkerScratch& scratch, std::vector<MarkerBlob>& blobs);
+                    MarkerScratch& scratch, std::vector<MarkerBlob>& blobs, double cap_area = 0);
 
 // Radius of the largest disc within the blob in `box`, px: a cap's radius from wherever it is seen,
 // as long as not more than half of its width is hidden.

@@ -27,6 +27,8 @@ Demonstration TrackStereo(const FrameSource& source, const StereoCameras& camera
   const bool by_hand = follower && options.tracker.kind != TrackerKind::kPaper;
   bool started = false;
   int frames = 0, kept = 0;
+  constexpr int kAllLost = 3;  // frames, after which the hand is sought as in the first one
+  int all_lost = 0;
   double scale = 0;
   while (const std::optional<StereoFrame> frame = source()) {
     if (!t_first) t_first = frame->t;
@@ -34,6 +36,10 @@ Demonstration TrackStereo(const FrameSource& source, const StereoCameras& camera
     TrackedFrame tracked;
     if (started) {
       tracked = tracker.Update(frame->left, frame->right, engine);
+      all_lost = tracked.num_seen() == 0 ? all_lost + 1 : 0;
+      if (by_hand && all_lost >= kAllLost) {
+        if (const auto again = follower->Start(tracker, *frame, false)) tracked = *again;
+      }
     } else if (auto start = by_hand ? follower->Start(tracker, *frame, t > options.max_wait / 2)
                                     : tracker.Start(frame->left, frame->right)) {
       tracked = *start;
