@@ -22,10 +22,12 @@ void FingertipTracker::Impl::DropShared(TrackedFrame& frame) {
   }
 }
 
-// A finger of which only a sliver is seen, and that far from where it should be though it was seen
-// right before, is not there: the sliver is another one's, or the views see different ones.
+// A finger of which only a sliver is seen, or that the views see in different places, and that is
+// far from where it should be though it was seen right before, is not there: that cap is another
+// one's.
 void FingertipTracker::Impl::DropJumps(TrackedFrame& frame) {
-  constexpr double kFar = 0.018, kWhole = 0.6;  // m; of a cap's pixels
+  constexpr double kFar = 0.018, kWhole = 0.6, kDisagree = 1;  // m; of a cap's pixels; px
+  constexpr int kShort = 2;                                    // frames
   PerFinger<Eigen::Vector3d> off;
   std::array<PerFinger<double>, 3> sorted;
   int seen = 0;
@@ -41,10 +43,18 @@ void FingertipTracker::Impl::DropJumps(TrackedFrame& frame) {
     std::sort(sorted[k].begin(), sorted[k].begin() + seen);
     common[k] = sorted[k][seen / 2];
   }
+  int steady = 0;  // fingers that moved as the hand did
   for (int f = 0; f < kNumFingers; ++f) {
-    if (!frame.fingers[f].p_W || fingers[f].lost_frames > 0) continue;
-    if (std::min(views[0].mass[f], views[1].mass[f]) > kWhole) continue;
-    if ((off[f] - common).norm() < kFar) continue;
+    steady +=
+        frame.fingers[f].p_W && fingers[f].lost_frames == 0 && (off[f] - common).norm() < kFar;
+  }
+  for (int f = 0; f < kNumFingers; ++f) {
+    const int lost = fingers[f].lost_frames;
+    if (!frame.fingers[f].p_W || lost > kShort) continue;
+    const bool sliver = std::min(views[0].mass[f], views[1].mass[f]) < kWhole;
+    const bool alone = steady >= 3 && (lost > 0 || frame.fingers[f].residual_px > kDisagree);
+    if (!(sliver && lost == 0) && !alone) continue;
+    if ((off[f] - common).norm() < (1 + 0.5 * lost) * kFar) continue;
     frame.fingers[f] = TrackedFinger();
     for (View& view : views) view.active[f] = false;
   }
