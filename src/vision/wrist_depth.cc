@@ -54,12 +54,12 @@ bool NearObject(const HandObservation& observation, int view, const Eigen::Vecto
                 double margin) {
   if (observation.object == nullptr) return false;
   const ObjectDepth& object = observation.object->depth[static_cast<std::size_t>(view)];
-  for (const double dx : {-margin, 0.0, margin}) {
-    for (const double dy : {-margin, 0.0, margin}) {
+  for (const double dx : {-margin, margin}) {
+    for (const double dy : {-margin, margin}) {
       if (object.Covers(pixel + Eigen::Vector2d(dx, dy))) return true;
     }
   }
-  return false;
+  return object.Covers(pixel);
 }
 
 cv::Mat Blurred(const cv::Mat& mask) {
@@ -68,31 +68,49 @@ cv::Mat Blurred(const cv::Mat& mask) {
   return blurred;
 }
 
-// Entries within 1.6 radii of a disc: skin and what is beside it.
+// Every other entry within 1.6 radii of a disc: skin and what is beside it.
 std::vector<Entry> EntriesOf(const StereoCameras& cameras, const HandObservation& observation,
                              const cv::Mat& left, const std::vector<Disc>& discs) {
   constexpr double kBeside = 1.6;
+  constexpr int kStride = 2;
   const HandMask &from = *observation.masks[0], &to = *observation.masks[1];
+  // Of every entry looked at the nearest disc, by its distance in radii.
+  struct Nearest {
+    float off = kBeside;
+    int disc = -1;
+  };
+  const int columns = left.cols / kStride, rows = left.rows / kStride;
+  std::vector<Nearest> nearest(static_cast<std::size_t>(std::max(0, columns * rows)));
+  for (std::size_t d = 0; d < discs.size(); ++d) {
+    const Eigen::Vector2d middle = from.ToMask(discs[d].pixel) / kStride;
+    const double radius = discs[d].radius_px / (from.step * kStride), reach = kBeside * radius;
+    const int i1 = std::min(rows - 1, static_cast<int>(middle.y() + reach));
+    const int j1 = std::min(columns - 1, static_cast<int>(middle.x() + reach));
+    for (int i = std::max(0, static_cast<int>(std::ceil(middle.y() - reach))); i <= i1; ++i) {
+      for (int j = std::max(0, static_cast<int>(std::ceil(middle.x() - reach))); j <= j1; ++j) {
+        const auto off = static_cast<float>(std::hypot(j - middle.x(), i - middle.y()) / radius);
+        Nearest& entry = nearest[static_cast<std::size_t>(i * columns + j)];
+        if (off < entry.off) entry = {off, static_cast<int>(d)};
+      }
+    }
+  }
   std::vector<Entry> entries;
   const Eigen::Vector3d eye = cameras.left.X_WC.translation();
   const Eigen::Vector3d forward = cameras.left.X_WC.linear().col(2);
-  for (int i = 1; i + 1 < left.rows; ++i) {
-    for (int j = 1; j + 1 < left.cols; ++j) {
-      const Eigen::Vector2d pixel = from.ToPixel(Eigen::Vector2d(j, i));
-      const Disc* nearest = nullptr;
-      double least = kBeside;
-      for (const Disc& disc : discs) {
-        const double off = (pixel - disc.pixel).norm() / disc.radius_px;
-        if (off < least) least = off, nearest = &disc;
-      }
-      if (nearest == nullptr || NearObject(observation, 0, pixel, 3 * from.step)) continue;
-      const Eigen::Vector3d ray =
-          PixelRay(cameras.left, pixel) / PixelRay(cameras.left, pixel).dot(forward);
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      const Nearest& found = nearest[static_cast<std::size_t>(i * columns + j)];
+      if (found.disc < 0) continue;
+      const Disc& disc = discs[static_cast<std::size_t>(found.disc)];
+      const Eigen::Vector2d pixel = from.ToPixel(Eigen::Vector2d(kStride * j, kStride * i));
+      if (NearObject(observation, 0, pixel, 3 * from.step)) continue;
+      Eigen::Vector3d ray = PixelRay(cameras.left, pixel);
+      ray /= ray.dot(forward);
       // Of the ball's surface, or at its outline of its centre.
       const double depth =
-          nearest->depth - nearest->radius * std::sqrt(std::max(0.0, 1 - least * least));
+          disc.depth - disc.radius * std::sqrt(std::max(0.0, 1.0 - found.off * found.off));
       const auto here = Project(cameras.right, eye + ray * depth);
-      const auto beyond = Project(cameras.right, eye + ray * (depth + kStep * nearest->lever));
+      const auto beyond = Project(cameras.right, eye + ray * (depth + kStep * disc.lever));
       if (!here || !beyond || NearObject(observation, 1, *here, 3 * to.step)) continue;
       const Eigen::Vector2d at = to.ToMask(*here), step = to.ToMask(*beyond) - at;
       const Eigen::Vector2d ends[2] = {at - kSteps * step, at + kSteps * step};
@@ -102,7 +120,8 @@ std::vector<Entry> EntriesOf(const StereoCameras& cameras, const HandObservation
                  end.y() < to.mask.rows - 1.001;
       }
       if (!inside) continue;
-      entries.push_back({float(left.at<std::uint8_t>(i, j)), at.cast<float>(), step.cast<float>()});
+      entries.push_back({float(left.at<std::uint8_t>(kStride * i, kStride * j)), at.cast<float>(),
+                         step.cast<float>()});
     }
   }
   return entries;
@@ -140,7 +159,7 @@ std::optional<WristDepth> MeasureWristDepth(const HandModel& model, const Stereo
   const cv::Mat left = Blurred(observation.masks[0]->mask);
   const cv::Mat right = Blurred(observation.masks[1]->mask);
   const std::vector<Entry> entries = EntriesOf(cameras, observation, left, discs);
-  constexpr std::size_t kFew = 100;
+  constexpr std::size_t kFew = 40;
   if (entries.size() < kFew) return std::nullopt;
   std::array<double, 2 * kSteps + 1> cost;
   int best = 0;
@@ -153,7 +172,7 @@ std::optional<WristDepth> MeasureWristDepth(const HandModel& model, const Stereo
   const double curvature = before - 2 * least + after;
   if (curvature <= 0) return std::nullopt;
   // Entries at an edge err together.
-  constexpr double kTogether = 30, kFloor = 30, kMost = 0.02;
+  constexpr double kTogether = 8, kFloor = 30, kMost = 0.02;
   const double sigma = kStep * std::sqrt(2 * kTogether * std::max(kFloor, least) /
                                          (curvature * static_cast<double>(entries.size())));
   if (sigma > kMost) return std::nullopt;
