@@ -54,9 +54,9 @@ TEST(Pipelined, NoMoreIsMadeAheadThanAllowed) {
 
 TEST(Pipelined, FailuresOfEitherSideComeOut) {
   int made = 0;
-  EXPECT_THROW(Pipelined<int>(CountTo(10, made),
-                              [](const Next&) { throw std::runtime_error("consumer"); }),
-               std::runtime_error);
+  EXPECT_THROW(
+      Pipelined<int>(CountTo(10, made), [](const Next&) { throw std::runtime_error("consumer"); }),
+      std::runtime_error);
   EXPECT_THROW(Pipelined<int>([]() -> std::optional<int> { throw std::logic_error("producer"); },
                               [](const Next& next) {
                                 while (next()) continue;

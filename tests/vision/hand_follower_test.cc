@@ -4,44 +4,12 @@
 
 #include <utility>
 
+#include "vision/seen_hand.h"
 #include "vision/synthetic_caps.h"
 #include "vision/test_hand.h"
 
 namespace springgrasp {
 namespace {
-
-// The model's own hand, palm to the eyes, drawn with caps and skin.
-struct Shown {
-  StereoFrame frame;
-  PerFinger<Eigen::Vector3d> tips;
-};
-
-Shown Show(const StereoCameras& eyes, const std::vector<DrawnCapsule>& others = {}) {
-  const HandModel model = MakeHandModel(TestHand());
-  HandFit hand;
-  hand.q = model.rest;
-  // Fingers up in the picture, z of H away from the eyes.
-  hand.X_WH.linear().col(0) = -Eigen::Vector3d::UnitY();
-  hand.X_WH.linear().col(1) = Eigen::Vector3d::UnitX();
-  hand.X_WH.linear().col(2) = Eigen::Vector3d::UnitZ();
-  hand.X_WH.translation() = Eigen::Vector3d(0.03, 0.1, 0.6);
-  const Eigen::Vector3d palm = PalmOf(hand), wrist = hand.X_WH.translation();
-  std::vector<DrawnCapsule> scene = others;
-  Shown shown;
-  for (int f = 0; f < kNumFingers; ++f) {
-    const Eigen::Vector3d tip = shown.tips[f] = FittedTip(model, hand, f);
-    const Eigen::Vector3d axis = FittedAxis(model, hand, f);
-    const double half = 0.5 * kCapLength - kCapRadius;
-    scene.push_back({tip - half * axis, tip + half * axis, kCapRadius, {20, 160, 20}});
-    scene.push_back({tip - 0.004 * axis, tip - 0.035 * axis, 0.0078, kSkin});
-    scene.push_back({tip - 0.035 * axis, palm, 0.0085, kSkin});
-  }
-  scene.push_back({palm, wrist, 0.033, kSkin});
-  scene.push_back({wrist, wrist + Eigen::Vector3d(0, 0.2, 0), 0.026, kSkin});
-  shown.frame.left = DrawCapsules(eyes.left, scene);
-  shown.frame.right = DrawCapsules(eyes.right, scene);
-  return shown;
-}
 
 double Farthest(const TrackedFrame& tracked, const Shown& shown) {
   double farthest = 0;
@@ -107,6 +75,65 @@ TEST(HandFollowerTest, ExchangedLabelsAreNoticedByTheHandThatTheyDoNotFit) {
   ASSERT_TRUE(order);
   EXPECT_EQ(*order, exchange);
   EXPECT_LT(Farthest(tracked, shown), 0.012);
+}
+
+// Fingers that were hidden together and come back, `seen` of them under the labels given.
+struct Returning : Watching {
+  Shown shown = Show(eyes);
+  TrackedFrame start;
+
+  Returning() {
+    start = *follower.Start(tracker, shown.frame, false);
+    follower.Follow(shown.frame, start, tracker, true);
+    TrackedFrame hidden = start;
+    for (int f = kIndex; f < kNumFingers; ++f) hidden.fingers[f] = TrackedFinger();
+    for (int k = 0; k < 4; ++k) {
+      TrackedFrame tracked = hidden;
+      follower.Follow(shown.frame, tracked, tracker, false);
+      follower.BetterLabels(shown.frame, tracker, tracked);
+    }
+  }
+  // Of finger f the cap of finger cap[f] is taken; none for -1.
+  TrackedFrame After(const PerFinger<int>& cap) {
+    TrackedFrame tracked;
+    for (int f = 0; f < kNumFingers; ++f) {
+      if (cap[f] >= 0) tracked.fingers[f] = start.fingers[cap[f]];
+    }
+    follower.Follow(shown.frame, tracked, tracker, false);
+    follower.BetterLabels(shown.frame, tracker, tracked);
+    return tracked;
+  }
+  int Wrong(const TrackedFrame& tracked) const {
+    int wrong = 0;
+    for (int f = 0; f < kNumFingers; ++f) {
+      wrong += tracked.fingers[f].p_W && (*tracked.fingers[f].p_W - shown.tips[f]).norm() > 0.012;
+    }
+    return wrong;
+  }
+};
+
+TEST(HandFollowerTest, OfFourFingersOneThatComesBackIsNotReportedSinceItMayBeAny) {
+  for (const int cap : {1, 2, 3, 4}) {
+    Returning hand;
+    const TrackedFrame tracked = hand.After({0, cap, -1, -1, -1});
+    EXPECT_EQ(tracked.num_seen(), 1);
+    EXPECT_TRUE(tracked.fingers[kThumb].p_W);
+  }
+}
+
+TEST(HandFollowerTest, FingersThatComeBackUnderNeighboursLabelsAreNotReportedThere) {
+  for (const PerFinger<int>& caps : {PerFinger<int>{0, 2, 3, 4, -1}, PerFinger<int>{0, -1, 1, 2, 3},
+                                     PerFinger<int>{0, 1, 2, 3, -1}}) {
+    Returning hand;
+    EXPECT_EQ(hand.Wrong(hand.After(caps)), 0);
+  }
+}
+
+TEST(HandFollowerTest, AllFourFingersThatComeBackGetTheOrderOfTheHand) {
+  Returning hand;
+  const TrackedFrame tracked = hand.After({0, 3, 1, 4, 2});
+  EXPECT_EQ(hand.Wrong(tracked), 0);
+  EXPECT_EQ(tracked.num_seen(), kNumFingers);
 }
 
 }  // namespace

@@ -100,6 +100,36 @@ TEST(ChooseCapsTest, GreenishClutterIsLeftAside) {
   }
 }
 
+TEST(SegmentMarkersTest, CapsThatTouchArePartedByTheAreaOfOne) {
+  constexpr double kRadius = 9, kArea = M_PI * kRadius * kRadius;
+  for (const double turn : {0.0, 0.7, 1.5}) {
+    cv::Mat likelihood = cv::Mat::zeros(200, 200, CV_8UC1);
+    std::vector<Eigen::Vector2d> caps;
+    for (int k = 0; k < 4; ++k) {
+      caps.push_back(Eigen::Vector2d(100, 100) +
+                     (17.0 * k - 25.5) * Eigen::Vector2d(std::cos(turn), std::sin(turn)));
+    }
+    caps.emplace_back(30, 170);  // on its own
+    for (const Eigen::Vector2d& cap : caps) {
+      cv::circle(likelihood, cv::Point(int(std::lround(cap.x())), int(std::lround(cap.y()))),
+                 int(kRadius), 255, cv::FILLED);
+    }
+    MarkerScratch scratch;
+    std::vector<MarkerBlob> whole, parted;
+    SegmentMarkers(likelihood, 20, {}, scratch, whole);
+    EXPECT_EQ(whole.size(), 2U);
+    SegmentMarkers(likelihood, 20, {}, scratch, parted, kArea);
+    ASSERT_EQ(parted.size(), caps.size());
+    for (const Eigen::Vector2d& cap : caps) {
+      double nearest = 1e9;
+      for (const MarkerBlob& blob : parted) {
+        nearest = std::min(nearest, (blob.centre - cap).norm());
+      }
+      EXPECT_LT(nearest, 2);
+    }
+  }
+}
+
 TEST(MarkerColourTest, TheHueOfTheCapsIsFoundInThePicture) {
   const StereoCameras eyes = TestEyes();
   DrawnHand hand = MakeDrawnHand({0.03, 0.03, 0.6}, 0);

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "vision/overlay.h"
+#include "vision/seen_hand.h"
 #include "vision/synthetic_caps.h"
 
 namespace springgrasp {
@@ -67,6 +68,34 @@ TEST(TrackStereoTest, NoVideoAndNoCapsAreErrors) {
   TrackDemonstrationOptions options;
   options.max_wait = 0.05;
   EXPECT_THROW(TrackStereo(Frames(eyes, 9, 9, next), eyes, nullptr, options, engine), Error);
+}
+
+TEST(TrackStereoTest, AHandThatWasGoneIsFoundWhereverItComesBack) {
+  constexpr int kBefore = 3, kGone = 6, kAfter = 6;
+  const StereoCameras eyes = TestEyes();
+  const Shown here = Show(eyes), there = Show(eyes, {}, {-0.09, 0.12, 0.66});
+  StereoFrame empty;
+  empty.left = DrawCapsules(eyes.left, {});
+  empty.right = DrawCapsules(eyes.right, {});
+  int next = 0;
+  const FrameSource source = [&]() -> std::optional<StereoFrame> {
+    if (next == kBefore + kGone + kAfter) return std::nullopt;
+    StereoFrame frame = next < kBefore ? here.frame : next < kBefore + kGone ? empty : there.frame;
+    frame.t = next++ / 30.0;
+    return frame;
+  };
+  const KinematicTree hand = TestHand();
+  RandomEngine engine = MakeStream(1, 0, "observation");
+  const Demonstration demonstration = TrackStereo(source, eyes, &hand, {}, engine);
+  ASSERT_EQ(demonstration.samples.size(), static_cast<std::size_t>(next));
+  for (int i = kBefore; i < kBefore + kGone; ++i) {
+    for (const auto& tip : demonstration.samples[i].p_WF) EXPECT_FALSE(tip);
+  }
+  for (int f = 0; f < kNumFingers; ++f) {
+    const auto& tip = demonstration.samples.back().p_WF[f];
+    ASSERT_TRUE(tip);
+    EXPECT_LT((*tip - there.tips[f]).norm(), 0.012);
+  }
 }
 
 TEST(OverlayTest, ViewsStandSideBySideWithAColourForEachFinger) {
