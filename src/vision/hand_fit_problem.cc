@@ -150,7 +150,7 @@ HandFitProblem::HandFitProblem(const HandModel& model, const StereoCameras& came
     num_residuals_ += static_cast<int>(model.balls.size() + field.samples.size());
   }
   num_residuals_ +=
-      3 + 1 + 6 + 2 * n_ + static_cast<int>(model.coupled.size() + model.neighbours.size()) + 3;
+      2 + 1 + 6 + 2 * n_ + static_cast<int>(model.coupled.size() + model.neighbours.size()) + 3;
   node_motion_.assign(model.tree.nodes.size(), {});
   for (std::size_t b = 0; b < model.tree.nodes.size(); ++b) {
     for (int a = static_cast<int>(b); a >= 0; a = model.tree.nodes[a].parent) {
@@ -213,7 +213,7 @@ void HandFitProblem::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
     row += static_cast<int>(fields_.masks[v].samples.size());
   }
   AddSleeve(fit, row, r, J);
-  row += 3;
+  row += 2;
   AddWrist(fit, row++, r, J);
   // Motion.
   if (!first_) {
@@ -346,20 +346,12 @@ void HandFitProblem::AddSleeve(const HandFit& fit, int row, Eigen::VectorXd& r,
   if (!model_.sleeve_x) return;
   constexpr double kReach = 20;  // px
   const Eigen::Vector3d p_W = fit.X_WH * Eigen::Vector3d(fit.scale * *model_.sleeve_x, 0, 0);
-  std::array<std::optional<Sleeve>, 2> sleeve;
   for (int v = 0; v < 2; ++v) {
-    sleeve[v] = SleeveIn(v, p_W);
-    if (!sleeve[v]) continue;
+    const auto sleeve = SleeveIn(v, p_W);
+    if (!sleeve) continue;
     double gain;
-    r[row + v] = Saturate(sleeve[v]->distance, kReach, options_.sleeve_sigma_px, gain);
-    if (J != nullptr) AddRow(fit, 0, p_W, gain * sleeve[v]->slope_W, row + v, *J);
-  }
-  if (!sleeve[0] || !sleeve[1]) return;
-  double gain;
-  r[row + 2] = Saturate(sleeve[0]->distance - sleeve[1]->distance, kReach,
-                        options_.sleeve_depth_sigma_px, gain);
-  if (J != nullptr) {
-    AddRow(fit, 0, p_W, gain * (sleeve[0]->slope_W - sleeve[1]->slope_W), row + 2, *J);
+    r[row + v] = Saturate(sleeve->distance, kReach, options_.sleeve_sigma_px, gain);
+    if (J != nullptr) AddRow(fit, 0, p_W, gain * sleeve->slope_W, row + v, *J);
   }
 }
 

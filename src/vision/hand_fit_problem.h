@@ -38,8 +38,7 @@ HandFields MakeFields(const StereoCameras& cameras, const HandObservation& obser
 //   tips          3 per finger    (tip - seen) / sigma
 //   balls         1 per view      distance outside the mask
 //   outline       1 per view      signed distance from the outline of the balls
-//   sleeve        3               where the bare forearm ends, signed distance from the mask's edge
-//                                 in each view, and what the views differ by, which tells depth
+//   sleeve        1 per view      where the bare forearm ends, signed distance from the mask's edge
 //   wrist         1               depth of the origin of H
 //   motion        6               deviation from the predicted pose
 //   joints        2 n             deviation from the last and from the resting posture

@@ -23,7 +23,6 @@ struct HandPoseOptions {
   double ball_sigma_px = 5;            // of a ball outside the mask
   double skin_sigma_px = 4;            // of the mask's outline off that of the balls
   double sleeve_sigma_px = 4;          // of the end of the bare forearm off the mask's edge
-  double sleeve_depth_sigma_px = 1.2;  // of the difference of that between the views
   double mask_reach_px = 7;          // beyond, a mask residual says no more: objects hide the hand
   double wrist_depth_sigma = 0.004;  // m, beside that of the measurement
   double wrist_depth_reach = 0.03;   // m; beyond, a measured depth says no more
