@@ -13,17 +13,18 @@
 namespace springgrasp {
 namespace {
 
-constexpr double kReach = 0.06;  // m, each way
-constexpr int kSteps = 20;       // each way
+constexpr double kReach = 0.06;    // m, each way
+constexpr double kSleeve = 0.008;  // m, that a sleeve's rim, the usual edge there, stands off
+constexpr int kSteps = 20;         // each way
 constexpr double kStep = kReach / kSteps;
 
 // A ball of palm or forearm as the left camera sees it.
 struct Disc {
   Eigen::Vector2d pixel;
   double radius_px;
-  double depth;   // m, of its centre
-  double radius;  // m
-  double lever;   // what its depth changes by, over the wrist's
+  double depth;  // m, of its centre
+  double front;  // m, of its surface before that
+  double lever;  // what its depth changes by, over the wrist's
 };
 
 // An entry of the left mask and where it would be in the right one, in entries.
@@ -44,8 +45,9 @@ std::vector<Disc> DiscsOf(const HandModel& model, const CameraModel& camera, con
     const auto pixel = Project(camera, p_W);
     const double radius = fit.scale * ball.radius, depth = forward.dot(p_W - eye);
     if (!pixel || depth < 0.05) continue;
+    const double front = radius + (ball.forearm ? kSleeve : 0);
     discs.push_back(
-        {*pixel, camera.fx * radius / depth, depth, radius, (p_W - pivot_W).norm() / arm});
+        {*pixel, camera.fx * radius / depth, depth, front, (p_W - pivot_W).norm() / arm});
   }
   return discs;
 }
@@ -108,7 +110,7 @@ std::vector<Entry> EntriesOf(const StereoCameras& cameras, const HandObservation
       ray /= ray.dot(forward);
       // Of the ball's surface, or at its outline of its centre.
       const double depth =
-          disc.depth - disc.radius * std::sqrt(std::max(0.0, 1.0 - found.off * found.off));
+          disc.depth - disc.front * std::sqrt(std::max(0.0, 1.0 - found.off * found.off));
       const auto here = Project(cameras.right, eye + ray * depth);
       const auto beyond = Project(cameras.right, eye + ray * (depth + kStep * disc.lever));
       if (!here || !beyond || NearObject(observation, 1, *here, 3 * to.step)) continue;
