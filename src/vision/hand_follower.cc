@@ -120,6 +120,14 @@ void HandFollower::Advance() {
   }
 }
 
+void HandFollower::Restart(const HandObservation& seen) {
+  astray_frames_ = 0;
+  const auto anew = RestartHandFit(model_, cameras_, seen, *fit_, options_);
+  if (!anew) return;
+  fit_ = anew;
+  step_ = {};
+}
+
 HandFit HandFollower::Refit(const HandObservation& seen, const PerFinger<int>& order,
                             const HandFit& last, const HandStep& step,
                             const HandPoseOptions& options) const {
@@ -230,8 +238,11 @@ std::optional<PerFinger<int>> HandFollower::BetterLabels(const StereoFrame& fram
     }
     if (changed) return found.order;
   }
+  constexpr double kAstray = 60;  // of the cost: three times the usual one
+  astray_frames_ = fit_->tips_used >= 4 && fit_->cost > kAstray ? astray_frames_ + 1 : 0;
   if (fit_->tips_used < 3 || fit_->tip_rms < kUnfit) {
     unfit_frames_ = 0;
+    if (astray_frames_ >= kLong) Restart(Observe(frame, tracked, tracker));
     return std::nullopt;
   }
   if (++unfit_frames_ < kLong) return std::nullopt;
@@ -260,12 +271,7 @@ std::optional<PerFinger<int>> HandFollower::BetterLabels(const StereoFrame& fram
     }
   }
   if (!found) {
-    if (fit_->tips_used >= 4) {
-      if (const auto anew = RestartHandFit(model_, cameras_, seen, *fit_, options_)) {
-        fit_ = anew;
-        step_ = {};
-      }
-    }
+    if (fit_->tips_used >= 4) Restart(seen);
     return std::nullopt;
   }
   fit_ = fit;

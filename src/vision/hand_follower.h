@@ -51,6 +51,7 @@ class HandFollower {
     PerFinger<bool> unsure;
   };
   void Advance();
+  void Restart(const HandObservation& seen);
   Returning LabelsOfReturning(const HandObservation& seen);
   HandFit Refit(const HandObservation& seen, const PerFinger<int>& order, const HandFit& last,
                 const HandStep& step, const HandPoseOptions& options) const;
@@ -64,11 +65,12 @@ class HandFollower {
   HandPoseOptions options_;
   std::array<HandMask, 2> masks_;
   std::array<WhiteBalance, 2> white_balance_;  // since the skin was learned
-  PerFinger<int> lost_for_ = {};    // frames
-  PerFinger<int> back_since_ = {};  // frames since a lost finger was seen again; large: long ago
+  PerFinger<int> lost_for_ = {};               // frames
+  PerFinger<int> back_since_ = {};     // frames since a lost finger was seen again; large: long ago
   std::optional<HandFit> fit_before_;  // of the last frame
   HandStep step_before_;
-  int unfit_frames_ = 0;                       // for how long the hand has not fitted its tips
+  int unfit_frames_ = 0;   // for how long the hand has not fitted its tips
+  int astray_frames_ = 0;  // for how long it has fitted the pictures badly
   std::optional<KnownObject> object_;
   std::optional<HandFit> fit_;
   bool fresh_ = false;  // the fit is of the frame at hand

@@ -160,6 +160,7 @@ HandFit WithDepth(const HandModel& model, const StereoCameras& cameras,
                   const HandObservation& observation, HandFields fields, const HandFit& found,
                   const HandPoseOptions& options) {
   constexpr int kRounds = 2;
+  constexpr double kWorse = 10;  // of the cost: the depth was that of something else
   HandFit any;
   any.q = model.rest;
   HandFit fit = found;
@@ -168,6 +169,9 @@ HandFit WithDepth(const HandModel& model, const StereoCameras& cameras,
     HandFitProblem problem(model, cameras, observation, fields, any, any.X_WH, true, true, options);
     fit = Solve(problem, model, fit, 2 * options.start_iterations);
   }
+  fields.wrist.reset();
+  HandFitProblem plain(model, cameras, observation, fields, any, any.X_WH, true, true, options);
+  if (Solve(plain, model, fit, 0).cost > found.cost + kWorse) return found;
   fit.cost = found.cost;
   return fit;
 }
