@@ -3,25 +3,28 @@
 // cap_fit.h, which the paper does not have.
 //
 // What the paper leaves open, and the choice here (motion and weights: particle_filter.h):
-//  - first frame: pixels within a gate of hue, saturation and value; where things of that colour run
-//    together with the caps, closer gates one after the other. Of all pairs of blobs that the
-//    epipolar line allows, the five that look most like one hand;
-//  - labels: by polar angle about the palm (widest place of the skin), from the widest gap on, which
-//    is where the wrist is. With a model of the hand, its shape decides (hand_follower.h);
-//  - colour model: hue and saturation of these caps against the rest of the picture; value is left
-//    out, since lamps change it. It is not adapted later: that would follow whatever covers a cap;
+//  - first frame: pixels within a gate of hue, saturation and value; where things of that
+//    colour run together with the caps, closer gates one after the other. Of all pairs of
+//    blobs that the epipolar line allows, the five that look most like one hand;
+//  - labels: by polar angle about the palm (widest place of the skin), from the widest gap
+//    on, which is where the wrist is. With a model of the hand, its shape decides
+//    (hand_follower.h);
+//  - colour model: hue and saturation of these caps against the rest of the picture; value is
+//    left out, since lamps change it. It is not adapted later: that would follow whatever
+//    covers a cap;
 //  - mean shift: all fingers at once, a pixel counts for the nearest region only;
-//  - a region is lost when it holds too few cap pixels or another colour, or when the views disagree
-//    by more than `max_epipolar_px`. Two regions with no more pixels than one cap: the finger that
-//    should be elsewhere is lost, not both kept;
-//  - search: first from where the finger should be (the hand's common motion, or the fit of the
-//    whole hand), then among unclaimed blobs (kOutline: parted where caps touch), all lost fingers at
-//    once, by distance, by agreement of their offsets and by finger order;
+//  - a region is lost when it holds too few cap pixels or another colour, or when the views
+//    disagree by more than `max_epipolar_px`. Two regions with no more pixels than one cap:
+//    the finger that should be elsewhere is lost, not both kept;
+//  - search: first from where the finger should be (the hand's common motion, or the fit of
+//    the whole hand), then among unclaimed blobs (kOutline: parted where caps touch), all
+//    lost fingers at once, by distance, by agreement of their offsets and by finger order;
 //  - sudden motion of the whole hand (kOutline): the set of regions is first shifted as one;
-//  - labels (kOutline): where other labels explain all fingers' pasts much better, they are taken; a
-//    finger that alone jumps out of a hand seen well is not reported;
-//  - order about the palm: a violation starts a search; labels that both views see exchanged for
-//    long are restored, but only of fingers that were lost since (fingers do pass each other).
+//  - labels (kOutline): where other labels explain all fingers' pasts much better, they are
+//    taken; a finger that alone jumps out of a hand seen well is not reported;
+//  - order about the palm: a violation starts a search; labels that both views see exchanged
+//    for long are restored, but only of fingers that were lost since (fingers do pass each
+//    other).
 #pragma once
 
 #include <Eigen/Core>
