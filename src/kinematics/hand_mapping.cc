@@ -20,7 +20,7 @@ const std::array<Eigen::Vector2d, 4> kOtherStarts = {
     Eigen::Vector2d(0.1, 0.9), Eigen::Vector2d(0.9, 0.1), Eigen::Vector2d(0.3, 0.3),
     Eigen::Vector2d(0.8, 0.8)};  // of the ranges of j0, j1
 
-// The residuals of MappingOptions' table, with scratch space.
+// The residuals of MappingOptions' table over one angle per valve, with scratch space.
 class MappingProblem {
  public:
   MappingProblem(const RobotHand& robot, const MappingTarget& target,
@@ -29,59 +29,79 @@ class MappingProblem {
         target_(target),
         previous_(previous),
         options_(options),
+        q_(robot.open),
         J_full_(6, robot.tree.num_joints()) {
+    const int n = num_valves();
+    lower = Eigen::VectorXd::Constant(n, -std::numeric_limits<double>::infinity());
+    upper = -lower;
+    for (int v = 0; v < n; ++v) {
+      for (const int j : robot.valves[v]) {
+        lower[v] = std::max(lower[v], robot.tree.lower[j]);
+        upper[v] = std::min(upper[v], robot.tree.upper[j]);
+      }
+    }
     smooth_ = previous.size() == robot.tree.num_joints() && options.smoothness > 0;
     num_rows_ = 5 * kNumFingers + (robot.palm >= 0 ? 1 : 0) + (robot.opposition >= 0 ? 1 : 0);
-    for (const std::vector<int>& valve : robot.valves) {
-      const int n = static_cast<int>(valve.size());
-      num_rows_ += n * (n - 1) / 2;
-    }
     if (smooth_) num_rows_ += robot.tree.num_joints();
   }
 
   int num_rows() const { return num_rows_; }
+  int num_valves() const { return static_cast<int>(robot_.valves.size()); }
 
-  void Evaluate(const Eigen::VectorXd& q, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
-    ForwardKinematics(robot_.tree, q, X_HB_);
+  // Joints of one chamber feel equal torque against equal springs: one angle.
+  const Eigen::VectorXd& Joints(const Eigen::VectorXd& x) {
+    for (int v = 0; v < num_valves(); ++v) {
+      for (const int j : robot_.valves[v]) q_[j] = x[v];
+    }
+    return q_;
+  }
+
+  // The valves' angles nearest to joint angles: the mean of their joints.
+  Eigen::VectorXd Valves(const Eigen::VectorXd& q) const {
+    Eigen::VectorXd x(num_valves());
+    for (int v = 0; v < num_valves(); ++v) {
+      double sum = 0;
+      for (const int j : robot_.valves[v]) sum += q[j];
+      x[v] = sum / static_cast<double>(robot_.valves[v].size());
+    }
+    return x;
+  }
+
+  void Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
+    Joints(x);
+    ForwardKinematics(robot_.tree, q_, X_HB_);
     if (J != nullptr) J->setZero();
     int row = 0;
-    for (int f = 0; f < kNumFingers; ++f) {
-      const RobotHand::Finger& finger = robot_.fingers[f];
-      r[row] = (q[finger.j0] - target_.sigma[f][0]) * kJointScale;
-      r[row + 1] = (q[finger.j1] - target_.sigma[f][1]) * kJointScale;
-      const double scale = std::sqrt(target_.lambda[f] / 3) / (2 * finger.length);
-      r.segment<3>(row + 2) =
-          scale * (FramePose(robot_.tree, X_HB_, finger.tip).translation() - target_.p_HF[f]);
-      if (J != nullptr) {
-        (*J)(row, finger.j0) = kJointScale;
-        (*J)(row + 1, finger.j1) = kJointScale;
-        FrameJacobian(robot_.tree, X_HB_, finger.tip, J_full_);
-        J->middleRows<3>(row + 2) = scale * J_full_.topRows<3>();
-      }
-      row += 5;
-    }
-    const auto add = [&](double weight, int a, double wanted) {
-      r[row] = weight * (q[a] - wanted);
-      if (J != nullptr) (*J)(row, a) = weight;
+    const auto add = [&](double weight, int joint, double wanted) {
+      r[row] = weight * (q_[joint] - wanted);
+      if (J != nullptr) (*J)(row, robot_.valve_of[joint]) += weight;
       ++row;
     };
-    if (robot_.palm >= 0) add(options_.palm_weight / kPi, robot_.palm, options_.palm_wanted);
-    if (robot_.opposition >= 0) add(kJointScale, robot_.opposition, target_.opposition);
-    for (const std::vector<int>& valve : robot_.valves) {
-      for (std::size_t a = 0; a < valve.size(); ++a) {
-        for (std::size_t b = a + 1; b < valve.size(); ++b) {
-          const int k = row;
-          add(options_.coupling_weight / kPi, valve[a], q[valve[b]]);
-          if (J != nullptr) (*J)(k, valve[b]) = -options_.coupling_weight / kPi;
+    for (int f = 0; f < kNumFingers; ++f) {
+      const RobotHand::Finger& finger = robot_.fingers[f];
+      add(kJointScale, finger.j0, target_.sigma[f][0]);
+      add(kJointScale, finger.j1, target_.sigma[f][1]);
+      const double scale = std::sqrt(target_.lambda[f] / 3) / (2 * finger.length);
+      r.segment<3>(row) =
+          scale * (FramePose(robot_.tree, X_HB_, finger.tip).translation() - target_.p_HF[f]);
+      if (J != nullptr) {
+        FrameJacobian(robot_.tree, X_HB_, finger.tip, J_full_);
+        for (int j = 0; j < robot_.tree.num_joints(); ++j) {
+          J->col(robot_.valve_of[j]).segment<3>(row) += scale * J_full_.col(j).head<3>();
         }
       }
+      row += 3;
     }
+    if (robot_.palm >= 0) add(options_.palm_weight / kPi, robot_.palm, options_.palm_wanted);
+    if (robot_.opposition >= 0) add(kJointScale, robot_.opposition, target_.opposition);
     if (smooth_) {
       for (int j = 0; j < robot_.tree.num_joints(); ++j) {
         add(options_.smoothness / kPi, j, previous_[j]);
       }
     }
   }
+
+  Eigen::VectorXd lower, upper;  // of the valves' angles, rad
 
  private:
   const RobotHand& robot_;
@@ -90,6 +110,7 @@ class MappingProblem {
   const MappingOptions& options_;
   bool smooth_ = false;
   int num_rows_ = 0;
+  Eigen::VectorXd q_;
   std::vector<Pose> X_HB_;
   Eigen::MatrixXd J_full_;
 };
@@ -103,7 +124,7 @@ Eigen::VectorXd StartFromSigma(const RobotHand& robot, const MappingTarget& targ
   }
   if (robot.palm >= 0) q[robot.palm] = options.palm_wanted;
   if (robot.opposition >= 0) q[robot.opposition] = target.opposition;
-  return q.cwiseMax(robot.tree.lower).cwiseMin(robot.tree.upper);
+  return q;
 }
 
 MappingResult Finish(const RobotHand& robot, const MappingTarget& target, Eigen::VectorXd q,
@@ -152,41 +173,50 @@ MappingResult MapHand(const RobotHand& robot, const MappingTarget& target,
   MappingProblem rows(robot, target, previous, options);
   LeastSquaresProblem problem;
   problem.num_residuals = rows.num_rows();
-  problem.lower = robot.tree.lower;
-  problem.upper = robot.tree.upper;
-  problem.evaluate = [&rows](const Eigen::VectorXd& q, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
-    rows.Evaluate(q, r, J);
+  problem.lower = rows.lower;
+  problem.upper = rows.upper;
+  problem.evaluate = [&rows](const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
+    rows.Evaluate(x, r, J);
   };
   LevenbergMarquardtOptions solver;
   solver.max_iterations = options.max_iterations;
-  solver.gradient_tolerance = 1e-12;
-  solver.step_tolerance = 1e-9;
+  solver.gradient_tolerance = 1e-9;
+  solver.step_tolerance = 1e-6;
   const bool warm = previous.size() == robot.tree.num_joints();
-  LevenbergMarquardtResult solution = MinimizeLeastSquares(
-      problem, warm ? previous : StartFromSigma(robot, target, options), solver);
+  const Eigen::VectorXd start =
+      rows.Valves(warm ? previous : StartFromSigma(robot, target, options));
+  LevenbergMarquardtResult solution = MinimizeLeastSquares(problem, start, solver);
   // The position term has two basins per finger (bent at the knuckle or at the middle joint): a
   // cold start looks into the other ones too.
   for (int f = 0; f < kNumFingers && !warm; ++f) {
-    const RobotHand::Finger& finger = robot.fingers[f];
+    const int v0 = robot.valve_of[robot.fingers[f].j0], v1 = robot.valve_of[robot.fingers[f].j1];
     for (const Eigen::Vector2d& part : kOtherStarts) {
-      Eigen::VectorXd start = solution.x;
-      const auto at = [&](int j, double s) {
-        return robot.tree.lower[j] + s * (robot.tree.upper[j] - robot.tree.lower[j]);
-      };
-      start[finger.j0] = at(finger.j0, part[0]);
-      start[finger.j1] = at(finger.j1, part[1]);
-      const LevenbergMarquardtResult other = MinimizeLeastSquares(problem, start, solver);
+      Eigen::VectorXd other_start = solution.x;
+      other_start[v0] = rows.lower[v0] + part[0] * (rows.upper[v0] - rows.lower[v0]);
+      other_start[v1] = rows.lower[v1] + part[1] * (rows.upper[v1] - rows.lower[v1]);
+      const LevenbergMarquardtResult other = MinimizeLeastSquares(problem, other_start, solver);
       if (other.cost < solution.cost) solution = other;
     }
   }
-  return Finish(robot, target, solution.x, 2 * solution.cost);
+  return Finish(robot, target, rows.Joints(solution.x), 2 * solution.cost);
+}
+
+std::vector<MappingResult> MapHandAlong(const RobotHand& robot,
+                                        const std::vector<MappingTarget>& targets,
+                                        const MappingOptions& options) {
+  std::vector<MappingResult> results;
+  results.reserve(targets.size());
+  for (const MappingTarget& target : targets) {
+    results.push_back(
+        MapHand(robot, target, results.empty() ? Eigen::VectorXd() : results.back().q, options));
+  }
+  return results;
 }
 
 MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target, int starts,
-                             const MappingOptions& options) {
-  const Eigen::VectorXd no_previous;
-  MappingProblem rows(robot, target, no_previous, options);
-  const int n = robot.tree.num_joints();
+                             const Eigen::VectorXd& previous, const MappingOptions& options) {
+  MappingProblem rows(robot, target, previous, options);
+  const int n = rows.num_valves();
   Eigen::VectorXd q(n), r(rows.num_rows());
   Eigen::MatrixXd J(rows.num_rows(), n);
   nlopt::opt solver(nlopt::LD_SLSQP, static_cast<unsigned>(n));
@@ -208,18 +238,22 @@ MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target
   const auto bound = [n](const Eigen::VectorXd& v) {
     return std::vector<double>(v.data(), v.data() + n);
   };
-  solver.set_lower_bounds(bound(robot.tree.lower));
-  solver.set_upper_bounds(bound(robot.tree.upper));
-  solver.set_xtol_rel(1e-10);
-  solver.set_ftol_rel(1e-14);
+  solver.set_lower_bounds(bound(rows.lower));
+  solver.set_upper_bounds(bound(rows.upper));
+  solver.set_xtol_abs(1e-6);
+  solver.set_ftol_rel(1e-12);
   solver.set_maxeval(500);
   RandomEngine engine = MakeStream(0, 0, "mapping yardstick");
   std::vector<double> best(n), x(n);
   double best_cost = std::numeric_limits<double>::infinity();
+  const bool warm = previous.size() == robot.tree.num_joints();
+  const Eigen::VectorXd start =
+      rows.Valves(warm ? previous : StartFromSigma(robot, target, options))
+          .cwiseMax(rows.lower)
+          .cwiseMin(rows.upper);
   for (int s = 0; s < starts; ++s) {
-    const Eigen::VectorXd start = StartFromSigma(robot, target, options);
-    for (int j = 0; j < n; ++j) {
-      x[j] = s == 0 ? start[j] : Uniform(engine, robot.tree.lower[j], robot.tree.upper[j]);
+    for (int v = 0; v < n; ++v) {
+      x[v] = s == 0 ? start[v] : Uniform(engine, rows.lower[v], rows.upper[v]);
     }
     double found = 0;
     try {
@@ -234,7 +268,7 @@ MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target
       best = x;
     }
   }
-  return Finish(robot, target, Eigen::Map<Eigen::VectorXd>(best.data(), n), best_cost);
+  return Finish(robot, target, rows.Joints(Eigen::Map<Eigen::VectorXd>(best.data(), n)), best_cost);
 }
 
 }  // namespace springgrasp

@@ -1,0 +1,15 @@
+// The solid shapes of a robot in MuJoCo as plain values for planning.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include "kinematics/arm_body.h"
+
+namespace springgrasp {
+
+// Links: the colliding shapes of the bodies that the arm's joints move, with the hand as it is
+// posed in `data` wrapped into capsules; the rest: all others of the same robot, as posed. Exempt:
+// what the model exempts. Shapes other than spheres, capsules, cylinders and boxes are left out.
+ArmBody ArmBodyOf(const Arm& arm, const mjModel& model, const mjData& data);
+
+}  // namespace springgrasp
