@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "experiment/grasp_requests.h"
 #include "grasp/generate.h"
+#include "kinematics/smooth_hand_ik.h"
 #include "sim/scene_builder.h"
 
 namespace springgrasp {
@@ -45,6 +46,8 @@ std::vector<Grasp> ReadLibrary() {
   return library;
 }
 
+int Anchor(const GraspCase& c) { return static_cast<int>(ContactSample(c.motion, c.request.dt)); }
+
 GraspCase MakeGraspCase(const GraspBodies& bodies, const std::vector<Grasp>& library,
                         std::uint64_t seed, std::uint64_t n, double dt) {
   RandomEngine engine = MakeStream(seed, n, "grasp cases");
@@ -57,21 +60,21 @@ GraspCase MakeGraspCase(const GraspBodies& bodies, const std::vector<Grasp>& lib
   options.shape = DrawShape(grasp.type, grasp.shape, engine);
   options.tip_radius = c.body->hand.tip_radius;
   options.dt = dt;
-  options.duration = Uniform(engine, 0.8, 2.0);
+  options.duration = Uniform(engine, 1.5, 3.0);  // s, what the planner takes
   options.X_WO = MakePose({Uniform(engine, 0.2, 0.5), Uniform(engine, 0.4, 0.6), 1.0},
                           ExpRotation({0, 0, Uniform(engine, -1.0, 1.0)}));
-  options.similar_reach = true;
   const Pose X_WH_start = HandPose(c.body->arm, c.body->arm.q(c.body->arm.joints));
   const Pose X_turn = MakePose({Uniform(engine, -0.1, 0.1), Uniform(engine, -0.1, 0.1), 0},
                                ExpRotation({0, 0, Uniform(engine, -0.3, 0.3)}));
   c.motion = GenerateMotion(grasp, options);
-  c.q_human = SolveHandMotion(c.human, TipsOf(c.motion));
+  c.q_human = SolveHandMotionSmoothly(c.human, TipsOf(c.motion), {.dt = dt});
   c.posture = SolveContactPosture(
       c.body->hand,
       RequestContacts(c.human, c.body->hand, c.motion, c.q_human[ContactSample(c.motion, dt)]));
+  options.similar_reach = true;
   options.X_WG_start = X_turn * X_WH_start * c.posture.X_HG;
   c.motion = GenerateMotion(grasp, options);
-  c.q_human = SolveHandMotion(c.human, TipsOf(c.motion));
+  c.q_human = SolveHandMotionSmoothly(c.human, TipsOf(c.motion), {.dt = dt});
   std::vector<Pose> X_WH;
   for (const FingertipMotionSample& sample : c.motion.samples) {
     X_WH.push_back(sample.X_WG * c.posture.X_HG.inverse());

@@ -28,7 +28,7 @@ struct GraspCase {
   const RobotBody* body = nullptr;
   HumanHand human;                       // that demonstrated
   FingertipMotion motion;                // even steps of dt
-  std::vector<Eigen::VectorXd> q_human;  // by SolveHandMotion, rad
+  std::vector<Eigen::VectorXd> q_human;  // by SolveHandMotionSmoothly, rad
   ContactPosture posture;                // of the robot
   HandMotionRequest request;
 };
@@ -37,6 +37,9 @@ struct GraspCase {
 // reach and its duration drawn. dt in s.
 GraspCase MakeGraspCase(const GraspBodies& bodies, const std::vector<Grasp>& library,
                         std::uint64_t seed, std::uint64_t n, double dt = 0.005);
+
+// The sample at which the fingers touch.
+int Anchor(const GraspCase& c);
 
 // pinch, tripod, power, lateral of models/grasps.
 std::vector<Grasp> ReadLibrary();

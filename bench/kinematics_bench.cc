@@ -46,7 +46,7 @@ const std::vector<Frame>& Frames() {
       const GraspCase c = MakeGraspCase(Bodies(), library, kSeed, n);
       const RobotHand& robot = c.body->hand;
       const std::vector<MappingTarget> targets = MappingTargets(c.human, robot, c.request);
-      const std::vector<MappingResult> mapped = MapHandAlong(robot, targets);
+      const std::vector<MappingResult> mapped = MapHandAlong(robot, targets, Anchor(c));
       for (std::size_t k = 10; k < targets.size(); k += 10) {
         result.push_back({&robot, targets[k], mapped[k - 1].q});
       }

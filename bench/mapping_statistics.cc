@@ -37,7 +37,7 @@ struct Spread {
 };
 
 struct Tally {
-  long frames = 0, outside = 0, asked = 0, worse = 0, jumps = 0, demanded = 0;
+  long frames = 0, outside = 0, asked = 0, worse = 0, jumps = 0, limited = 0, demanded = 0;
   double largest_jump = 0, largest_excess = 0;
 };
 
@@ -65,7 +65,9 @@ double TipStep(const MappingTarget& a, const MappingTarget& b) {
 void Count(const GraspCase& c, int every, Tally& tally) {
   const RobotHand& robot = c.body->hand;
   const std::vector<MappingTarget> targets = MappingTargets(c.human, robot, c.request);
-  const std::vector<MappingResult> mapped = MapHandAlong(robot, targets);
+  MappingOptions options;
+  options.max_step = kJump;
+  const std::vector<MappingResult> mapped = MapHandAlong(robot, targets, Anchor(c), options);
   for (std::size_t k = 0; k < targets.size(); ++k) {
     ++tally.frames;
     if (!Within(robot.tree, mapped[k].q)) ++tally.outside;
@@ -74,7 +76,8 @@ void Count(const GraspCase& c, int every, Tally& tally) {
       if (TipStep(targets[k], targets[k - 1]) > kTipJump) {
         ++tally.demanded;
       } else {
-        if (step > kJump) ++tally.jumps;
+        if (step > kJump * (1 + 1e-9)) ++tally.jumps;
+        if (step > kJump * (1 - 1e-6)) ++tally.limited;
         tally.largest_jump = std::max(tally.largest_jump, step);
       }
     }
@@ -99,7 +102,7 @@ void CountLambdas(const GraspCase& c, int every, std::map<double, LambdaTally>& 
         if (c.request.involved[f]) target.lambda[f] = lambda;
       }
     }
-    mapped[lambda] = MapHandAlong(robot, targets);
+    mapped[lambda] = MapHandAlong(robot, targets, Anchor(c));
   }
   for (std::size_t k = 0; k < planned.size(); k += static_cast<std::size_t>(every)) {
     for (int f = 0; f < kNumFingers; ++f) {
@@ -140,10 +143,10 @@ void CountHuman(const GraspCase& c, HumanTally& tally) {
 
 void Print(const std::string& name, const Tally& t) {
   fmt::print(
-      "{:<8} {:>8} {:>8} {:>8} {:>7.2f} {:>9.1e} {:>7} {:>8.2f} {:>9}\n", name, t.frames, t.outside,
-      t.asked,
+      "{:<8} {:>8} {:>8} {:>8} {:>7.2f} {:>9.1e} {:>7} {:>8.2f} {:>8} {:>9}\n", name, t.frames,
+      t.outside, t.asked,
       100.0 * static_cast<double>(t.asked - t.worse) / static_cast<double>(std::max(1L, t.asked)),
-      t.largest_excess, t.jumps, kDegrees * t.largest_jump, t.demanded);
+      t.largest_excess, t.jumps, kDegrees * t.largest_jump, t.limited, t.demanded);
 }
 
 // Wanted and mapped joint angles (degrees) and the tips' distance from where they are wanted (mm).
@@ -161,7 +164,7 @@ void Trace(const std::string& path) {
     const GraspCase c = MakeGraspCase(bodies, library, kSeed, n);
     const RobotHand& robot = c.body->hand;
     const std::vector<MappingTarget> targets = MappingTargets(c.human, robot, c.request);
-    const std::vector<MappingResult> mapped = MapHandAlong(robot, targets);
+    const std::vector<MappingResult> mapped = MapHandAlong(robot, targets, Anchor(c));
     for (std::size_t k = 0; k < targets.size(); k += 2) {
       csv += fmt::format("{},{:.4f}", c.type, c.request.dt * static_cast<double>(k) / c.request.T);
       for (int f = 0; f < kNumFingers; ++f) {
@@ -209,10 +212,14 @@ int Main(int argc, char** argv) {
   }
   fmt::print(
       "\nmapping: frames outside the ranges, asked of NLopt ({} starts), as good (%), "
-      "largest excess of S' (relative); steps over 3 degrees and the largest one, degrees; "
+      "largest excess of S' (relative); steps over 3 degrees and the largest one, degrees; steps "
+      "at the "
+      "limit of 3 degrees; "
       "steps where the wanted tip jumps over {:.0f} mm\n",
       kRestarts, 1e3 * kTipJump);
-  fmt::print("grasp      frames  outside    asked    good    excess   jumps  largest  demanded\n");
+  fmt::print(
+      "grasp      frames  outside    asked    good    excess   jumps  largest  limited  "
+      "demanded\n");
   Tally all;
   for (const auto& [name, t] : tallies) {
     Print(name, t);
@@ -221,6 +228,7 @@ int Main(int argc, char** argv) {
     all.asked += t.asked;
     all.worse += t.worse;
     all.jumps += t.jumps;
+    all.limited += t.limited;
     all.demanded += t.demanded;
     all.largest_jump = std::max(all.largest_jump, t.largest_jump);
     all.largest_excess = std::max(all.largest_excess, t.largest_excess);

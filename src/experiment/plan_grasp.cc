@@ -10,6 +10,7 @@
 #include "kinematics/hand_motion.h"
 #include "kinematics/reach_plan.h"
 #include "kinematics/shape_distance.h"
+#include "kinematics/smooth_hand_ik.h"
 #include "motion/minimum_jerk.h"
 
 namespace springgrasp {
@@ -122,7 +123,8 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
 
     // Where the hand holds the object (independent of where the object stands).
     FingertipMotion motion = GenerateMotion(grasp, generate);
-    std::vector<Eigen::VectorXd> q_human = SolveHandMotion(human, TipsOf(motion));
+    std::vector<Eigen::VectorXd> q_human =
+        SolveHandMotionSmoothly(human, TipsOf(motion), {.dt = dt});
     const ContactRequest contacts =
         RequestContacts(human, body.hand, motion, q_human[ContactSample(motion, dt)]);
     result.posture = SolveContactPosture(body.hand, contacts);
@@ -186,7 +188,7 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     // The chosen one in full.
     const Pose X_WO = request.object.X_WO * planned.X_OF;
     path(planned.X_OF);
-    q_human = SolveHandMotion(human, TipsOf(motion));
+    q_human = SolveHandMotionSmoothly(human, TipsOf(motion), {.dt = dt});
     const HandMotionResult hand = MapHandMotion(
         human, body.hand,
         RequestHandMotion(motion, q_human, result.posture, planned.X_WH, X_WO, dt), result.posture);

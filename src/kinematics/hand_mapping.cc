@@ -40,7 +40,13 @@ class MappingProblem {
         upper[v] = std::min(upper[v], robot.tree.upper[j]);
       }
     }
-    smooth_ = previous.size() == robot.tree.num_joints() && options.smoothness > 0;
+    const bool warm = previous.size() == robot.tree.num_joints();
+    if (warm && options.max_step > 0) {
+      const Eigen::VectorXd from = Valves(previous).cwiseMax(lower).cwiseMin(upper);
+      lower = lower.cwiseMax((from.array() - options.max_step).matrix());
+      upper = upper.cwiseMin((from.array() + options.max_step).matrix());
+    }
+    smooth_ = warm && options.smoothness > 0;
     num_rows_ = 5 * kNumFingers + (robot.palm >= 0 ? 1 : 0) + (robot.opposition >= 0 ? 1 : 0);
     if (smooth_) num_rows_ += robot.tree.num_joints();
   }
@@ -202,13 +208,18 @@ MappingResult MapHand(const RobotHand& robot, const MappingTarget& target,
 }
 
 std::vector<MappingResult> MapHandAlong(const RobotHand& robot,
-                                        const std::vector<MappingTarget>& targets,
+                                        const std::vector<MappingTarget>& targets, int anchor,
                                         const MappingOptions& options) {
-  std::vector<MappingResult> results;
-  results.reserve(targets.size());
-  for (const MappingTarget& target : targets) {
-    results.push_back(
-        MapHand(robot, target, results.empty() ? Eigen::VectorXd() : results.back().q, options));
+  const int n = static_cast<int>(targets.size());
+  std::vector<MappingResult> results(targets.size());
+  if (n == 0) return results;
+  anchor = std::clamp(anchor, 0, n - 1);
+  results[anchor] = MapHand(robot, targets[anchor], {}, options);
+  for (int k = anchor - 1; k >= 0; --k) {
+    results[k] = MapHand(robot, targets[k], results[k + 1].q, options);
+  }
+  for (int k = anchor + 1; k < n; ++k) {
+    results[k] = MapHand(robot, targets[k], results[k - 1].q, options);
   }
   return results;
 }

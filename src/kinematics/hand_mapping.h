@@ -34,6 +34,7 @@ struct MappingOptions {
   double palm_weight = 1;
   double palm_wanted = 0;  // rad
   double smoothness = 0;
+  double max_step = 0;  // rad, of any joint from `previous` (bounds, as Eq. 16); 0: no limit
   int max_iterations = 60;
 };
 
@@ -52,9 +53,10 @@ MappingTarget TargetFromHuman(const HumanHand& human, const Eigen::VectorXd& q_h
 MappingResult MapHand(const RobotHand& robot, const MappingTarget& target,
                       const Eigen::VectorXd& previous = {}, const MappingOptions& options = {});
 
-// A whole trajectory, each frame started from the one before.
+// A whole trajectory: frame `anchor` from cold (the contact, where the posture matters), the others
+// from there to both ends, each started from its neighbour.
 std::vector<MappingResult> MapHandAlong(const RobotHand& robot,
-                                        const std::vector<MappingTarget>& targets,
+                                        const std::vector<MappingTarget>& targets, int anchor,
                                         const MappingOptions& options = {});
 
 // The same problem by NLopt (SLSQP): started as MapHand is, and from starts - 1 random ones.

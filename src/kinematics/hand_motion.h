@@ -46,7 +46,8 @@ struct HandMotionResult {
 
 // What MapHandMotion asks of the mapping at each sample: the human posture and its scaled tips with
 // lambda = 1, and from t_switch on, for the involved fingers, more and more the tips of the request
-// with a weight that rises to lambda_contact.
+// with a weight that rises to lambda_contact. Tips near or beyond the end of a finger's reach are
+// drawn in smoothly, the contacts excepted.
 std::vector<MappingTarget> MappingTargets(const HumanHand& human, const RobotHand& robot,
                                           const HandMotionRequest& request,
                                           const HandMotionOptions& options = {});
