@@ -18,7 +18,7 @@
 namespace springgrasp {
 namespace {
 
-constexpr std::uint64_t kSeed = 1001;
+constexpr std::uint64_t kSeed = 2001;
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kJump = 3 / kDegrees;  // rad between samples
 constexpr double kTipJump = 0.004;      // m between samples: demanded
@@ -43,7 +43,6 @@ struct Tally {
 
 struct LambdaTally {
   Spread error, likeness, reachable_error;
-  long reachable = 0;
 };
 
 struct HumanTally {
@@ -91,7 +90,8 @@ void Count(const GraspCase& c, int every, Tally& tally) {
 }
 
 // The involved fingers' position weight constant; the distance-only optimum says who can be there.
-void CountLambdas(const GraspCase& c, int every, std::map<double, LambdaTally>& tallies) {
+void CountLambdas(const GraspCase& c, int every, std::map<double, LambdaTally>& of_type,
+                  std::map<double, LambdaTally>& of_all) {
   const RobotHand& robot = c.body->hand;
   const std::vector<MappingTarget> planned = MappingTargets(c.human, robot, c.request);
   std::map<double, std::vector<MappingResult>> mapped;
@@ -111,12 +111,13 @@ void CountLambdas(const GraspCase& c, int every, std::map<double, LambdaTally>& 
       const RobotHand::Finger& finger = robot.fingers[f];
       for (const double lambda : kLambdas) {
         const MappingResult& result = mapped[lambda][k];
-        LambdaTally& tally = tallies[lambda];
-        tally.error.Add(1e3 * result.tip_error[f]);
-        if (reachable) tally.reachable_error.Add(1e3 * result.tip_error[f]);
         const Eigen::Vector2d off(result.q[finger.j0] - planned[k].sigma[f][0],
                                   result.q[finger.j1] - planned[k].sigma[f][1]);
-        tally.likeness.Add(kDegrees * std::sqrt(off.squaredNorm() / 2));
+        for (LambdaTally* tally : {&of_type[lambda], &of_all[lambda]}) {
+          tally->error.Add(1e3 * result.tip_error[f]);
+          if (reachable) tally->reachable_error.Add(1e3 * result.tip_error[f]);
+          tally->likeness.Add(kDegrees * std::sqrt(off.squaredNorm() / 2));
+        }
       }
     }
   }
@@ -195,11 +196,9 @@ int Main(int argc, char** argv) {
   std::map<std::string, std::map<double, LambdaTally>> lambdas;
   for (int n = 0; n < trajectories; ++n) {
     const GraspCase c = MakeGraspCase(bodies, library, kSeed, static_cast<std::uint64_t>(n));
-    for (const std::string& name : {c.type, std::string("all")}) {
-      if (name == c.type) Count(c, every, tallies[name]);
-      CountHuman(c, human[name]);
-      CountLambdas(c, every, lambdas[name]);
-    }
+    Count(c, every, tallies[c.type]);
+    CountLambdas(c, every, lambdas[c.type], lambdas["all"]);
+    for (const std::string& name : {c.type, std::string("all")}) CountHuman(c, human[name]);
   }
   fmt::print(
       "human hand: distance of its tips from those wanted, mm; largest joint step and bend "

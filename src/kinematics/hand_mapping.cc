@@ -1,14 +1,14 @@
 #include "kinematics/hand_mapping.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <nlopt.hpp>
 #include <numbers>
 
+#include "base/error.h"
 #include "base/random.h"
-#include "kinematics/levenberg_marquardt.h"
 
 namespace springgrasp {
 namespace {
@@ -20,19 +20,21 @@ const std::array<Eigen::Vector2d, 4> kOtherStarts = {
     Eigen::Vector2d(0.1, 0.9), Eigen::Vector2d(0.9, 0.1), Eigen::Vector2d(0.3, 0.3),
     Eigen::Vector2d(0.8, 0.8)};  // of the ranges of j0, j1
 
-// The residuals of MappingOptions' table over one angle per valve, with scratch space.
+// Unknowns: one per valve. Never on the heap: a frame is solved in microseconds.
+constexpr int kMostValves = 16;
+using Angles = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostValves, 1>;
+using Normal = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostValves, kMostValves>;
+
+// The sum of squares of MappingOptions' table over one angle per valve, with scratch space.
 class MappingProblem {
  public:
   MappingProblem(const RobotHand& robot, const MappingTarget& target,
                  const Eigen::VectorXd& previous, const MappingOptions& options)
-      : robot_(robot),
-        target_(target),
-        previous_(previous),
-        options_(options),
-        q_(robot.open),
-        J_full_(6, robot.tree.num_joints()) {
+      : robot_(robot), target_(target), previous_(previous), options_(options), q_(robot.open) {
     const int n = num_valves();
-    lower = Eigen::VectorXd::Constant(n, -std::numeric_limits<double>::infinity());
+    ThrowUnless(n <= kMostValves, "a hand to map to has at most {} valves, this one has {}",
+                kMostValves, n);
+    lower = Angles::Constant(n, -std::numeric_limits<double>::infinity());
     upper = -lower;
     for (int v = 0; v < n; ++v) {
       for (const int j : robot.valves[v]) {
@@ -40,22 +42,19 @@ class MappingProblem {
         upper[v] = std::min(upper[v], robot.tree.upper[j]);
       }
     }
-    const bool warm = previous.size() == robot.tree.num_joints();
-    if (warm && options.max_step > 0) {
-      const Eigen::VectorXd from = Valves(previous).cwiseMax(lower).cwiseMin(upper);
+    warm_ = previous.size() == robot.tree.num_joints();
+    if (warm_ && options.max_step > 0) {
+      const Angles from = Valves(previous).cwiseMax(lower).cwiseMin(upper);
       lower = lower.cwiseMax((from.array() - options.max_step).matrix());
       upper = upper.cwiseMin((from.array() + options.max_step).matrix());
     }
-    smooth_ = warm && options.smoothness > 0;
-    num_rows_ = 5 * kNumFingers + (robot.palm >= 0 ? 1 : 0) + (robot.opposition >= 0 ? 1 : 0);
-    if (smooth_) num_rows_ += robot.tree.num_joints();
   }
 
-  int num_rows() const { return num_rows_; }
   int num_valves() const { return static_cast<int>(robot_.valves.size()); }
+  bool warm() const { return warm_; }
 
   // Joints of one chamber feel equal torque against equal springs: one angle.
-  const Eigen::VectorXd& Joints(const Eigen::VectorXd& x) {
+  const Eigen::VectorXd& Joints(const Angles& x) {
     for (int v = 0; v < num_valves(); ++v) {
       for (const int j : robot_.valves[v]) q_[j] = x[v];
     }
@@ -63,8 +62,8 @@ class MappingProblem {
   }
 
   // The valves' angles nearest to joint angles: the mean of their joints.
-  Eigen::VectorXd Valves(const Eigen::VectorXd& q) const {
-    Eigen::VectorXd x(num_valves());
+  Angles Valves(const Eigen::VectorXd& q) const {
+    Angles x(num_valves());
     for (int v = 0; v < num_valves(); ++v) {
       double sum = 0;
       for (const int j : robot_.valves[v]) sum += q[j];
@@ -73,74 +72,166 @@ class MappingProblem {
     return x;
   }
 
-  void Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
+  // Where the mapping starts: from the previous frame, or from the human's angles.
+  Angles Start() const {
+    if (warm_) return Valves(previous_).cwiseMax(lower).cwiseMin(upper);
+    Eigen::VectorXd q = robot_.open;
+    for (int f = 0; f < kNumFingers; ++f) {
+      q[robot_.fingers[f].j0] = target_.sigma[f][0];
+      q[robot_.fingers[f].j1] = target_.sigma[f][1];
+    }
+    if (robot_.palm >= 0) q[robot_.palm] = options_.palm_wanted;
+    if (robot_.opposition >= 0) q[robot_.opposition] = target_.opposition;
+    return Valves(q).cwiseMax(lower).cwiseMin(upper);
+  }
+
+  // S' of Eq. 15 with our own rows: the sum of squares |r|^2; A = J'J and g = J'r where wanted.
+  double Evaluate(const Angles& x, Normal* A, Angles* g) {
     Joints(x);
     ForwardKinematics(robot_.tree, q_, X_HB_);
-    if (J != nullptr) J->setZero();
-    int row = 0;
+    if (A != nullptr) A->setZero(num_valves(), num_valves());
+    if (g != nullptr) g->setZero(num_valves());
+    double cost = 0;
     const auto add = [&](double weight, int joint, double wanted) {
-      r[row] = weight * (q_[joint] - wanted);
-      if (J != nullptr) (*J)(row, robot_.valve_of[joint]) += weight;
-      ++row;
+      const int v = robot_.valve_of[joint];
+      const double r = weight * (q_[joint] - wanted);
+      cost += r * r;
+      if (A != nullptr) (*A)(v, v) += weight * weight;
+      if (g != nullptr) (*g)[v] += weight * r;
     };
     for (int f = 0; f < kNumFingers; ++f) {
       const RobotHand::Finger& finger = robot_.fingers[f];
       add(kJointScale, finger.j0, target_.sigma[f][0]);
       add(kJointScale, finger.j1, target_.sigma[f][1]);
-      const double scale = std::sqrt(target_.lambda[f] / 3) / (2 * finger.length);
-      r.segment<3>(row) =
-          scale * (FramePose(robot_.tree, X_HB_, finger.tip).translation() - target_.p_HF[f]);
-      if (J != nullptr) {
-        FrameJacobian(robot_.tree, X_HB_, finger.tip, J_full_);
-        for (int j = 0; j < robot_.tree.num_joints(); ++j) {
-          J->col(robot_.valve_of[j]).segment<3>(row) += scale * J_full_.col(j).head<3>();
-        }
-      }
-      row += 3;
+      AddTip(f, A, g, cost);
     }
     if (robot_.palm >= 0) add(options_.palm_weight / kPi, robot_.palm, options_.palm_wanted);
     if (robot_.opposition >= 0) add(kJointScale, robot_.opposition, target_.opposition);
-    if (smooth_) {
+    if (warm_ && options_.smoothness > 0) {
       for (int j = 0; j < robot_.tree.num_joints(); ++j) {
         add(options_.smoothness / kPi, j, previous_[j]);
       }
     }
+    return cost;
   }
 
-  Eigen::VectorXd lower, upper;  // of the valves' angles, rad
+  // Of the tips at the last evaluation, m^2.
+  const PerFinger<double>& squared_tip_errors() const { return squared_tip_errors_; }
+
+  Angles lower, upper;  // of the valves' angles, rad
 
  private:
+  Eigen::Vector3d TipError(int f) const {
+    const KinematicTree::Frame& frame = robot_.tree.frames[robot_.fingers[f].tip];
+    return X_HB_[frame.node] * frame.X_BF.translation() - target_.p_HF[f];
+  }
+
+  // The position term of a finger, by the joints between its tip and H.
+  void AddTip(int f, Normal* A, Angles* g, double& cost) {
+    constexpr int kMostJoints = 8;
+    const RobotHand::Finger& finger = robot_.fingers[f];
+    const Eigen::Vector3d e = TipError(f);
+    const double weight = target_.lambda[f] / (3 * 4 * finger.length * finger.length);
+    squared_tip_errors_[f] = e.squaredNorm();
+    cost += weight * squared_tip_errors_[f];
+    if (g == nullptr) return;
+    const Eigen::Vector3d p_HF = e + target_.p_HF[f];
+    std::array<Eigen::Vector3d, kMostJoints> column;
+    std::array<int, kMostJoints> valve;
+    int count = 0;
+    for (int b = robot_.tree.frames[finger.tip].node; b >= 0; b = robot_.tree.nodes[b].parent) {
+      const KinematicTree::Node& node = robot_.tree.nodes[b];
+      if (node.joint < 0 || count == kMostJoints) continue;
+      const Eigen::Vector3d axis = X_HB_[b].linear() * node.axis;
+      column[count] = node.slide ? axis : axis.cross(p_HF - X_HB_[b].translation());
+      valve[count++] = robot_.valve_of[node.joint];
+    }
+    for (int i = 0; i < count; ++i) {
+      (*g)[valve[i]] += weight * column[i].dot(e);
+      if (A == nullptr) continue;
+      for (int j = 0; j < count; ++j) {
+        (*A)(valve[i], valve[j]) += weight * column[i].dot(column[j]);
+      }
+    }
+  }
+
   const RobotHand& robot_;
   const MappingTarget& target_;
   const Eigen::VectorXd& previous_;
   const MappingOptions& options_;
-  bool smooth_ = false;
-  int num_rows_ = 0;
+  bool warm_ = false;
   Eigen::VectorXd q_;
   std::vector<Pose> X_HB_;
-  Eigen::MatrixXd J_full_;
+  PerFinger<double> squared_tip_errors_ = {};
 };
 
-Eigen::VectorXd StartFromSigma(const RobotHand& robot, const MappingTarget& target,
-                               const MappingOptions& options) {
-  Eigen::VectorXd q = robot.open;
+struct MappingSolution {
+  Angles x;
+  double cost = 0;
+  PerFinger<double> squared_tip_errors = {};
+};
+
+MappingResult ResultOf(MappingProblem& problem, const MappingSolution& solution) {
+  MappingResult result;
+  result.q = problem.Joints(solution.x);
+  result.cost = solution.cost;
   for (int f = 0; f < kNumFingers; ++f) {
-    q[robot.fingers[f].j0] = target.sigma[f][0];
-    q[robot.fingers[f].j1] = target.sigma[f][1];
+    result.tip_error[f] = std::sqrt(solution.squared_tip_errors[f]);
   }
-  if (robot.palm >= 0) q[robot.palm] = options.palm_wanted;
-  if (robot.opposition >= 0) q[robot.opposition] = target.opposition;
-  return q;
+  return result;
 }
 
-MappingResult Finish(const RobotHand& robot, const MappingTarget& target, Eigen::VectorXd q,
-                     double cost) {
-  MappingResult result;
-  const PerFinger<Eigen::Vector3d> tips = TipPositions(robot, q);
-  for (int f = 0; f < kNumFingers; ++f) result.tip_error[f] = (tips[f] - target.p_HF[f]).norm();
-  result.q = std::move(q);
-  result.cost = cost;
-  return result;
+// Projected Levenberg-Marquardt as in levenberg_marquardt.h, on the normal equations alone.
+MappingSolution Minimize(MappingProblem& problem, const Angles& start, int max_iterations) {
+  constexpr double kStep = 1e-5;      // rad, where it ends
+  constexpr double kGradient = 1e-9;  // of the cost, per rad
+  MappingSolution best;
+  best.x = start;
+  Normal A, damped, A_trial;
+  Angles g, g_trial;
+  best.cost = problem.Evaluate(best.x, &A, &g);
+  best.squared_tip_errors = problem.squared_tip_errors();
+  double damping = 1e-4, growth = 2;
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    const Eigen::Index n = best.x.size();
+    double largest = 0;
+    damped = A;
+    Angles slope = g;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const bool held = (best.x[i] <= problem.lower[i] && slope[i] > 0) ||
+                        (best.x[i] >= problem.upper[i] && slope[i] < 0);
+      if (held) {
+        slope[i] = 0;
+        damped.row(i).setZero();
+        damped.col(i).setZero();
+        damped(i, i) = 1;
+      }
+      largest = std::max(largest, std::abs(slope[i]));
+    }
+    if (largest < kGradient) return best;
+    const Angles diagonal = damped.diagonal();
+    for (int attempt = 0;; ++attempt) {
+      if (attempt == 30) return best;
+      damped.diagonal() = (1 + damping) * diagonal;
+      const Angles x =
+          (best.x - damped.llt().solve(slope)).cwiseMax(problem.lower).cwiseMin(problem.upper);
+      if (!((x - best.x).cwiseAbs().maxCoeff() > kStep)) return best;
+      const double cost = problem.Evaluate(x, &A_trial, &g_trial);
+      if (cost < best.cost) {
+        best.x = x;
+        best.cost = cost;
+        best.squared_tip_errors = problem.squared_tip_errors();
+        A = A_trial;
+        g = g_trial;
+        damping = std::max(damping / 10, 1e-12);
+        growth = 2;
+        break;
+      }
+      damping = std::max(damping, 1e-12) * growth;
+      growth *= 2;
+    }
+  }
+  return best;
 }
 
 }  // namespace
@@ -176,35 +267,21 @@ MappingTarget TargetFromHuman(const HumanHand& human, const Eigen::VectorXd& q_h
 
 MappingResult MapHand(const RobotHand& robot, const MappingTarget& target,
                       const Eigen::VectorXd& previous, const MappingOptions& options) {
-  MappingProblem rows(robot, target, previous, options);
-  LeastSquaresProblem problem;
-  problem.num_residuals = rows.num_rows();
-  problem.lower = rows.lower;
-  problem.upper = rows.upper;
-  problem.evaluate = [&rows](const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
-    rows.Evaluate(x, r, J);
-  };
-  LevenbergMarquardtOptions solver;
-  solver.max_iterations = options.max_iterations;
-  solver.gradient_tolerance = 1e-9;
-  solver.step_tolerance = 1e-6;
-  const bool warm = previous.size() == robot.tree.num_joints();
-  const Eigen::VectorXd start =
-      rows.Valves(warm ? previous : StartFromSigma(robot, target, options));
-  LevenbergMarquardtResult solution = MinimizeLeastSquares(problem, start, solver);
+  MappingProblem problem(robot, target, previous, options);
+  MappingSolution solution = Minimize(problem, problem.Start(), options.max_iterations);
   // The position term has two basins per finger (bent at the knuckle or at the middle joint): a
   // cold start looks into the other ones too.
-  for (int f = 0; f < kNumFingers && !warm; ++f) {
+  for (int f = 0; f < kNumFingers && !problem.warm(); ++f) {
     const int v0 = robot.valve_of[robot.fingers[f].j0], v1 = robot.valve_of[robot.fingers[f].j1];
     for (const Eigen::Vector2d& part : kOtherStarts) {
-      Eigen::VectorXd other_start = solution.x;
-      other_start[v0] = rows.lower[v0] + part[0] * (rows.upper[v0] - rows.lower[v0]);
-      other_start[v1] = rows.lower[v1] + part[1] * (rows.upper[v1] - rows.lower[v1]);
-      const LevenbergMarquardtResult other = MinimizeLeastSquares(problem, other_start, solver);
+      Angles start = solution.x;
+      start[v0] = problem.lower[v0] + part[0] * (problem.upper[v0] - problem.lower[v0]);
+      start[v1] = problem.lower[v1] + part[1] * (problem.upper[v1] - problem.lower[v1]);
+      const MappingSolution other = Minimize(problem, start, options.max_iterations);
       if (other.cost < solution.cost) solution = other;
     }
   }
-  return Finish(robot, target, rows.Joints(solution.x), 2 * solution.cost);
+  return ResultOf(problem, solution);
 }
 
 std::vector<MappingResult> MapHandAlong(const RobotHand& robot,
@@ -226,45 +303,34 @@ std::vector<MappingResult> MapHandAlong(const RobotHand& robot,
 
 MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target, int starts,
                              const Eigen::VectorXd& previous, const MappingOptions& options) {
-  MappingProblem rows(robot, target, previous, options);
-  const int n = rows.num_valves();
-  Eigen::VectorXd q(n), r(rows.num_rows());
-  Eigen::MatrixXd J(rows.num_rows(), n);
+  MappingProblem problem(robot, target, previous, options);
+  const int n = problem.num_valves();
   nlopt::opt solver(nlopt::LD_SLSQP, static_cast<unsigned>(n));
-  const nlopt::vfunc cost = [](const std::vector<double>& x, std::vector<double>& gradient,
-                               void* context) {
-    return (*static_cast<std::function<double(const std::vector<double>&, std::vector<double>&)>*>(
-        context))(x, gradient);
+  const nlopt::vfunc objective = [](const std::vector<double>& x, std::vector<double>& gradient,
+                                    void* context) {
+    const Angles angles = Eigen::Map<const Eigen::VectorXd>(x.data(), x.size());
+    Angles g;
+    const double cost = static_cast<MappingProblem*>(context)->Evaluate(
+        angles, nullptr, gradient.empty() ? nullptr : &g);
+    for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] = 2 * g[i];
+    return cost;
   };
-  std::function<double(const std::vector<double>&, std::vector<double>&)> evaluate =
-      [&](const std::vector<double>& x, std::vector<double>& gradient) {
-        q = Eigen::Map<const Eigen::VectorXd>(x.data(), n);
-        rows.Evaluate(q, r, gradient.empty() ? nullptr : &J);
-        if (!gradient.empty()) {
-          Eigen::Map<Eigen::VectorXd>(gradient.data(), n) = 2 * J.transpose() * r;
-        }
-        return r.squaredNorm();
-      };
-  solver.set_min_objective(cost, &evaluate);
-  const auto bound = [n](const Eigen::VectorXd& v) {
+  solver.set_min_objective(objective, &problem);
+  const auto as_vector = [n](const Angles& v) {
     return std::vector<double>(v.data(), v.data() + n);
   };
-  solver.set_lower_bounds(bound(rows.lower));
-  solver.set_upper_bounds(bound(rows.upper));
-  solver.set_xtol_abs(1e-6);
+  solver.set_lower_bounds(as_vector(problem.lower));
+  solver.set_upper_bounds(as_vector(problem.upper));
+  solver.set_xtol_abs(1e-5);
   solver.set_ftol_rel(1e-12);
   solver.set_maxeval(500);
   RandomEngine engine = MakeStream(0, 0, "mapping yardstick");
-  std::vector<double> best(n), x(n);
-  double best_cost = std::numeric_limits<double>::infinity();
-  const bool warm = previous.size() == robot.tree.num_joints();
-  const Eigen::VectorXd start =
-      rows.Valves(warm ? previous : StartFromSigma(robot, target, options))
-          .cwiseMax(rows.lower)
-          .cwiseMin(rows.upper);
+  MappingSolution best;
+  best.cost = std::numeric_limits<double>::infinity();
   for (int s = 0; s < starts; ++s) {
-    for (int v = 0; v < n; ++v) {
-      x[v] = s == 0 ? start[v] : Uniform(engine, rows.lower[v], rows.upper[v]);
+    std::vector<double> x = as_vector(problem.Start());
+    for (int v = 0; v < n && s > 0; ++v) {
+      x[v] = Uniform(engine, problem.lower[v], problem.upper[v]);
     }
     double found = 0;
     try {
@@ -272,14 +338,11 @@ MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target
     } catch (const std::runtime_error&) {
       // Round-off at the optimum: x is still the best point so far.
     }
-    std::vector<double> none;
-    found = evaluate(x, none);
-    if (found < best_cost) {
-      best_cost = found;
-      best = x;
-    }
+    const Angles angles = Eigen::Map<const Eigen::VectorXd>(x.data(), n);
+    const double cost = problem.Evaluate(angles, nullptr, nullptr);
+    if (cost < best.cost) best = {angles, cost, problem.squared_tip_errors()};
   }
-  return Finish(robot, target, rows.Joints(Eigen::Map<Eigen::VectorXd>(best.data(), n)), best_cost);
+  return ResultOf(problem, best);
 }
 
 }  // namespace springgrasp

@@ -68,8 +68,12 @@ ArmBody ArmBodyOf(const Arm& arm, const mjModel& model, const mjData& data) {
   for (std::size_t n = 0; n < arm.tree.nodes.size(); ++n) {
     node_of[arm.tree.nodes[n].name] = static_cast<int>(n);
   }
-  const int first =
-      model.jnt_bodyid[IdOf(model, mjOBJ_JOINT, arm.tree.joint_names[arm.joints.front()])];
+  // The bodies of the first two joints turn in place beside the chest, by design without touching.
+  constexpr int kInPlace = 2;
+  const auto body_of = [&](int joint) {
+    return model.jnt_bodyid[IdOf(model, mjOBJ_JOINT, arm.tree.joint_names[arm.joints[joint]])];
+  };
+  const int first = body_of(kInPlace);
   const auto root_of = [&](int body) {
     while (body > 0 && model.body_parentid[body] > 0) body = model.body_parentid[body];
     return body;
@@ -96,6 +100,9 @@ ArmBody ArmBodyOf(const Arm& arm, const mjModel& model, const mjData& data) {
       continue;
     }
     const int node = node_that_moves(body);
+    bool in_place = false;
+    for (int i = 0; i < kInPlace; ++i) in_place = in_place || body == body_of(i);
+    if (in_place) continue;
     const Pose X_WG = PoseOfGeom(model, data, g);
     if (node >= 0) {
       int b = body;
