@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "kinematics/fast_hand.h"
 
 namespace springgrasp {
 namespace {
@@ -20,23 +21,22 @@ const std::array<Eigen::Vector2d, 4> kOtherStarts = {
     Eigen::Vector2d(0.1, 0.9), Eigen::Vector2d(0.9, 0.1), Eigen::Vector2d(0.3, 0.3),
     Eigen::Vector2d(0.8, 0.8)};  // of the ranges of j0, j1
 
-// Unknowns: one per valve. Never on the heap: a frame is solved in microseconds.
-constexpr int kMostValves = 16;
-using Angles = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostValves, 1>;
-using Normal = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostValves, kMostValves>;
-
 // The sum of squares of MappingOptions' table over one angle per valve, with scratch space.
 class MappingProblem {
  public:
   MappingProblem(const RobotHand& robot, const MappingTarget& target,
-                 const Eigen::VectorXd& previous, const MappingOptions& options)
-      : robot_(robot), target_(target), previous_(previous), options_(options), q_(robot.open) {
-    const int n = num_valves();
-    ThrowUnless(n <= kMostValves, "a hand to map to has at most {} valves, this one has {}",
-                kMostValves, n);
-    lower = Angles::Constant(n, -std::numeric_limits<double>::infinity());
-    upper = -lower;
-    for (int v = 0; v < n; ++v) {
+                 const Eigen::VectorXd& previous, const MappingOptions& options, FastHand& hand)
+      : robot_(robot),
+        target_(target),
+        previous_(previous),
+        options_(options),
+        q_(robot.open),
+        hand_(hand) {
+    lower.setZero();
+    upper.setZero();
+    for (int v = 0; v < num_valves(); ++v) {
+      lower[v] = -std::numeric_limits<double>::infinity();
+      upper[v] = -lower[v];
       for (const int j : robot.valves[v]) {
         lower[v] = std::max(lower[v], robot.tree.lower[j]);
         upper[v] = std::min(upper[v], robot.tree.upper[j]);
@@ -44,7 +44,7 @@ class MappingProblem {
     }
     warm_ = previous.size() == robot.tree.num_joints();
     if (warm_ && options.max_step > 0) {
-      const Angles from = Valves(previous).cwiseMax(lower).cwiseMin(upper);
+      const ValveAngles from = Valves(previous).cwiseMax(lower).cwiseMin(upper);
       lower = lower.cwiseMax((from.array() - options.max_step).matrix());
       upper = upper.cwiseMin((from.array() + options.max_step).matrix());
     }
@@ -54,7 +54,7 @@ class MappingProblem {
   bool warm() const { return warm_; }
 
   // Joints of one chamber feel equal torque against equal springs: one angle.
-  const Eigen::VectorXd& Joints(const Angles& x) {
+  const Eigen::VectorXd& Joints(const ValveAngles& x) {
     for (int v = 0; v < num_valves(); ++v) {
       for (const int j : robot_.valves[v]) q_[j] = x[v];
     }
@@ -62,8 +62,8 @@ class MappingProblem {
   }
 
   // The valves' angles nearest to joint angles: the mean of their joints.
-  Angles Valves(const Eigen::VectorXd& q) const {
-    Angles x(num_valves());
+  ValveAngles Valves(const Eigen::VectorXd& q) const {
+    ValveAngles x = ValveAngles::Zero();
     for (int v = 0; v < num_valves(); ++v) {
       double sum = 0;
       for (const int j : robot_.valves[v]) sum += q[j];
@@ -73,7 +73,7 @@ class MappingProblem {
   }
 
   // Where the mapping starts: from the previous frame, or from the human's angles.
-  Angles Start() const {
+  ValveAngles Start() const {
     if (warm_) return Valves(previous_).cwiseMax(lower).cwiseMin(upper);
     Eigen::VectorXd q = robot_.open;
     for (int f = 0; f < kNumFingers; ++f) {
@@ -86,11 +86,14 @@ class MappingProblem {
   }
 
   // S' of Eq. 15 with our own rows: the sum of squares |r|^2; A = J'J and g = J'r where wanted.
-  double Evaluate(const Angles& x, Normal* A, Angles* g) {
+  double Evaluate(const ValveAngles& x, ValveMatrix* A, ValveAngles* g) {
     Joints(x);
-    ForwardKinematics(robot_.tree, q_, X_HB_);
-    if (A != nullptr) A->setZero(num_valves(), num_valves());
-    if (g != nullptr) g->setZero(num_valves());
+    hand_.Move(x);
+    if (A != nullptr) {
+      A->setZero();
+      for (int v = num_valves(); v < kMostValves; ++v) (*A)(v, v) = 1;
+    }
+    if (g != nullptr) g->setZero();
     double cost = 0;
     const auto add = [&](double weight, int joint, double wanted) {
       const int v = robot_.valve_of[joint];
@@ -118,16 +121,17 @@ class MappingProblem {
   // Of the tips at the last evaluation, m^2.
   const PerFinger<double>& squared_tip_errors() const { return squared_tip_errors_; }
 
-  Angles lower, upper;  // of the valves' angles, rad
+  ValveAngles lower, upper;  // of the valves' angles, rad
 
  private:
   Eigen::Vector3d TipError(int f) const {
     const KinematicTree::Frame& frame = robot_.tree.frames[robot_.fingers[f].tip];
-    return X_HB_[frame.node] * frame.X_BF.translation() - target_.p_HF[f];
+    const FastHand::Body& body = hand_.body(frame.node);
+    return body.R_HB * frame.X_BF.translation() + body.p_HB - target_.p_HF[f];
   }
 
   // The position term of a finger, by the joints between its tip and H.
-  void AddTip(int f, Normal* A, Angles* g, double& cost) {
+  void AddTip(int f, ValveMatrix* A, ValveAngles* g, double& cost) {
     constexpr int kMostJoints = 8;
     const RobotHand::Finger& finger = robot_.fingers[f];
     const Eigen::Vector3d e = TipError(f);
@@ -139,12 +143,11 @@ class MappingProblem {
     std::array<Eigen::Vector3d, kMostJoints> column;
     std::array<int, kMostJoints> valve;
     int count = 0;
-    for (int b = robot_.tree.frames[finger.tip].node; b >= 0; b = robot_.tree.nodes[b].parent) {
-      const KinematicTree::Node& node = robot_.tree.nodes[b];
-      if (node.joint < 0 || count == kMostJoints) continue;
-      const Eigen::Vector3d axis = X_HB_[b].linear() * node.axis;
-      column[count] = node.slide ? axis : axis.cross(p_HF - X_HB_[b].translation());
-      valve[count++] = robot_.valve_of[node.joint];
+    for (int b = robot_.tree.frames[finger.tip].node; b >= 0; b = hand_.body(b).parent) {
+      const FastHand::Body& body = hand_.body(b);
+      if (body.valve < 0 || count == kMostJoints) continue;
+      column[count] = (body.R_HB * body.axis).cross(p_HF - body.p_HB);
+      valve[count++] = body.valve;
     }
     for (int i = 0; i < count; ++i) {
       (*g)[valve[i]] += weight * column[i].dot(e);
@@ -161,12 +164,12 @@ class MappingProblem {
   const MappingOptions& options_;
   bool warm_ = false;
   Eigen::VectorXd q_;
-  std::vector<Pose> X_HB_;
+  FastHand& hand_;
   PerFinger<double> squared_tip_errors_ = {};
 };
 
 struct MappingSolution {
-  Angles x;
+  ValveAngles x;
   double cost = 0;
   PerFinger<double> squared_tip_errors = {};
 };
@@ -182,22 +185,21 @@ MappingResult ResultOf(MappingProblem& problem, const MappingSolution& solution)
 }
 
 // Projected Levenberg-Marquardt as in levenberg_marquardt.h, on the normal equations alone.
-MappingSolution Minimize(MappingProblem& problem, const Angles& start, int max_iterations) {
+MappingSolution Minimize(MappingProblem& problem, const ValveAngles& start, int max_iterations) {
   constexpr double kStep = 1e-5;      // rad, where it ends
   constexpr double kGradient = 1e-9;  // of the cost, per rad
   MappingSolution best;
   best.x = start;
-  Normal A, damped, A_trial;
-  Angles g, g_trial;
+  ValveMatrix A, damped, A_trial;
+  ValveAngles g, g_trial;
   best.cost = problem.Evaluate(best.x, &A, &g);
   best.squared_tip_errors = problem.squared_tip_errors();
   double damping = 1e-4, growth = 2;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    const Eigen::Index n = best.x.size();
     double largest = 0;
     damped = A;
-    Angles slope = g;
-    for (Eigen::Index i = 0; i < n; ++i) {
+    ValveAngles slope = g;
+    for (int i = 0; i < kMostValves; ++i) {
       const bool held = (best.x[i] <= problem.lower[i] && slope[i] > 0) ||
                         (best.x[i] >= problem.upper[i] && slope[i] < 0);
       if (held) {
@@ -209,11 +211,11 @@ MappingSolution Minimize(MappingProblem& problem, const Angles& start, int max_i
       largest = std::max(largest, std::abs(slope[i]));
     }
     if (largest < kGradient) return best;
-    const Angles diagonal = damped.diagonal();
+    const ValveAngles diagonal = damped.diagonal();
     for (int attempt = 0;; ++attempt) {
       if (attempt == 30) return best;
       damped.diagonal() = (1 + damping) * diagonal;
-      const Angles x =
+      const ValveAngles x =
           (best.x - damped.llt().solve(slope)).cwiseMax(problem.lower).cwiseMin(problem.upper);
       if (!((x - best.x).cwiseAbs().maxCoeff() > kStep)) return best;
       const double cost = problem.Evaluate(x, &A_trial, &g_trial);
@@ -232,6 +234,26 @@ MappingSolution Minimize(MappingProblem& problem, const Angles& start, int max_i
     }
   }
   return best;
+}
+
+MappingResult MapFrame(const RobotHand& robot, const MappingTarget& target,
+                       const Eigen::VectorXd& previous, const MappingOptions& options,
+                       FastHand& hand) {
+  MappingProblem problem(robot, target, previous, options, hand);
+  MappingSolution solution = Minimize(problem, problem.Start(), options.max_iterations);
+  // The position term has two basins per finger (bent at the knuckle or at the middle joint): a
+  // cold start looks into the other ones too.
+  for (int f = 0; f < kNumFingers && !problem.warm(); ++f) {
+    const int v0 = robot.valve_of[robot.fingers[f].j0], v1 = robot.valve_of[robot.fingers[f].j1];
+    for (const Eigen::Vector2d& part : kOtherStarts) {
+      ValveAngles start = solution.x;
+      start[v0] = problem.lower[v0] + part[0] * (problem.upper[v0] - problem.lower[v0]);
+      start[v1] = problem.lower[v1] + part[1] * (problem.upper[v1] - problem.lower[v1]);
+      const MappingSolution other = Minimize(problem, start, options.max_iterations);
+      if (other.cost < solution.cost) solution = other;
+    }
+  }
+  return ResultOf(problem, solution);
 }
 
 }  // namespace
@@ -267,21 +289,8 @@ MappingTarget TargetFromHuman(const HumanHand& human, const Eigen::VectorXd& q_h
 
 MappingResult MapHand(const RobotHand& robot, const MappingTarget& target,
                       const Eigen::VectorXd& previous, const MappingOptions& options) {
-  MappingProblem problem(robot, target, previous, options);
-  MappingSolution solution = Minimize(problem, problem.Start(), options.max_iterations);
-  // The position term has two basins per finger (bent at the knuckle or at the middle joint): a
-  // cold start looks into the other ones too.
-  for (int f = 0; f < kNumFingers && !problem.warm(); ++f) {
-    const int v0 = robot.valve_of[robot.fingers[f].j0], v1 = robot.valve_of[robot.fingers[f].j1];
-    for (const Eigen::Vector2d& part : kOtherStarts) {
-      Angles start = solution.x;
-      start[v0] = problem.lower[v0] + part[0] * (problem.upper[v0] - problem.lower[v0]);
-      start[v1] = problem.lower[v1] + part[1] * (problem.upper[v1] - problem.lower[v1]);
-      const MappingSolution other = Minimize(problem, start, options.max_iterations);
-      if (other.cost < solution.cost) solution = other;
-    }
-  }
-  return ResultOf(problem, solution);
+  FastHand hand(robot);
+  return MapFrame(robot, target, previous, options, hand);
 }
 
 std::vector<MappingResult> MapHandAlong(const RobotHand& robot,
@@ -290,33 +299,36 @@ std::vector<MappingResult> MapHandAlong(const RobotHand& robot,
   const int n = static_cast<int>(targets.size());
   std::vector<MappingResult> results(targets.size());
   if (n == 0) return results;
+  FastHand hand(robot);
   anchor = std::clamp(anchor, 0, n - 1);
-  results[anchor] = MapHand(robot, targets[anchor], {}, options);
+  results[anchor] = MapFrame(robot, targets[anchor], {}, options, hand);
   for (int k = anchor - 1; k >= 0; --k) {
-    results[k] = MapHand(robot, targets[k], results[k + 1].q, options);
+    results[k] = MapFrame(robot, targets[k], results[k + 1].q, options, hand);
   }
   for (int k = anchor + 1; k < n; ++k) {
-    results[k] = MapHand(robot, targets[k], results[k - 1].q, options);
+    results[k] = MapFrame(robot, targets[k], results[k - 1].q, options, hand);
   }
   return results;
 }
 
 MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target, int starts,
                              const Eigen::VectorXd& previous, const MappingOptions& options) {
-  MappingProblem problem(robot, target, previous, options);
+  FastHand hand(robot);
+  MappingProblem problem(robot, target, previous, options, hand);
   const int n = problem.num_valves();
   nlopt::opt solver(nlopt::LD_SLSQP, static_cast<unsigned>(n));
   const nlopt::vfunc objective = [](const std::vector<double>& x, std::vector<double>& gradient,
                                     void* context) {
-    const Angles angles = Eigen::Map<const Eigen::VectorXd>(x.data(), x.size());
-    Angles g;
+    ValveAngles angles = ValveAngles::Zero();
+    std::copy(x.begin(), x.end(), angles.data());
+    ValveAngles g;
     const double cost = static_cast<MappingProblem*>(context)->Evaluate(
         angles, nullptr, gradient.empty() ? nullptr : &g);
     for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] = 2 * g[i];
     return cost;
   };
   solver.set_min_objective(objective, &problem);
-  const auto as_vector = [n](const Angles& v) {
+  const auto as_vector = [n](const ValveAngles& v) {
     return std::vector<double>(v.data(), v.data() + n);
   };
   solver.set_lower_bounds(as_vector(problem.lower));
@@ -338,7 +350,8 @@ MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target
     } catch (const std::runtime_error&) {
       // Round-off at the optimum: x is still the best point so far.
     }
-    const Angles angles = Eigen::Map<const Eigen::VectorXd>(x.data(), n);
+    ValveAngles angles = ValveAngles::Zero();
+    std::copy(x.begin(), x.end(), angles.data());
     const double cost = problem.Evaluate(angles, nullptr, nullptr);
     if (cost < best.cost) best = {angles, cost, problem.squared_tip_errors()};
   }
