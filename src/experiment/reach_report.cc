@@ -115,12 +115,31 @@ std::vector<BasePosture> MovesIntoReach(const Scene& scene, const ReachAids& aid
                                         const ReachMapOptions& options) {
   constexpr std::size_t kMost = 3;
   std::vector<BasePosture> moves;
+  // One model in which torso and platform can move tells what the arm reaches from where; the few
+  // that serve are looked at with everything that stands in the way.
+  Scene movable = scene;
+  movable.active.insert(movable.active.end(), {"torso", "platform"});
+  Reacher quick = MakeReacher(movable, {});
+  const Eigen::VectorXd start = quick.arm.q;
+  const auto enough = [&](const Reacher& reacher, bool with_body) {
+    for (const Approach approach : {Approach::kSide, Approach::kAbove}) {
+      ReachSurroundings around = reacher.around;
+      if (with_body) around.body = &reacher.body;
+      if (4 * CountDirections(reacher.arm, reacher.hand, reacher.p_HG, p_WO, approach, around,
+                              options) >=
+          options.directions) {
+        return true;
+      }
+    }
+    return false;
+  };
   const double edge = scene.table.position.y() - scene.table.size.y() / 2;
   for (const auto& [cost, base] : Candidates(aids, edge)) {
-    const Reacher reacher = MakeReacher(scene, base);
-    const int best = std::max(Directions(reacher, p_WO, Approach::kSide, options),
-                              Directions(reacher, p_WO, Approach::kAbove, options));
-    if (4 * best < options.directions) continue;
+    quick.arm.q = start;
+    for (const auto& [joint, value] : base) {
+      quick.arm.q[quick.arm.tree.JointIndex(joint)] = value;
+    }
+    if (!enough(quick, false) || !enough(MakeReacher(scene, base), true)) continue;
     moves.push_back(base);
     if (moves.size() == kMost) break;
   }

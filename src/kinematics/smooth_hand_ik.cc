@@ -241,7 +241,12 @@ std::vector<Eigen::VectorXd> SolveHandMotionSmoothly(const HumanHand& hand,
                                                      const SmoothHandOptions& options) {
   ThrowUnless(options.dt > 0, "a hand motion needs a positive step");
   std::vector<Eigen::VectorXd> motion = SolveHandMotion(hand, p_HF, options.ik);
-  for (int f = 0; f < kNumFingers; ++f) FingerMotion(hand, f, p_HF, options, motion).Solve();
+  for (int f = 0; f < kNumFingers; ++f) {
+    // A finger that was never seen rests.
+    const bool seen = std::any_of(p_HF.begin(), p_HF.end(),
+                                  [f](const KnownTips& tips) { return tips[f].has_value(); });
+    if (seen) FingerMotion(hand, f, p_HF, options, motion).Solve();
+  }
   return motion;
 }
 
