@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/fingers.h"
+#include "experiment/reach_report.h"
 #include "render/camera_renderer.h"
 #include "render/video_writer.h"
 #include "sim/describe_model.h"
@@ -20,6 +21,7 @@ namespace {
 
 struct Options {
   std::string input, picture, camera, keyframe, drives;
+  bool reach = false;
 };
 
 constexpr double kPadAngle = 0.5;               // rad, of both joints while a pad pushes
@@ -74,8 +76,29 @@ ModelPtr LoadEither(const std::string& path) {
   Fail("{}: expected a model (.xml) or a scene (.yaml)", path);
 }
 
+// A map of where the hand can grasp in a scene.
+int InspectReach(const Options& options) {
+  const std::string extension = std::filesystem::path(options.input).extension();
+  ThrowUnless(extension == ".yaml" || extension == ".yml", "{}: --reach needs a scene (.yaml)",
+              options.input);
+  const Scene scene = ReadScene(options.input);
+  // Moves of torso and platform are shown whether or not the scene lets a trial use them.
+  const ReachReport report = ReportReach(scene, {true, true}, {});
+  fmt::print("{}", FormatReachReport(report));
+  if (!options.picture.empty()) {
+    MakeFolderOf(options.picture);
+    WriteImage(options.picture, DrawReachReport(report, scene));
+  }
+  return kDone;
+}
+
 int Inspect(const Options& options) {
   if (!options.picture.empty()) CheckOutputPath(options.picture);
+  if (options.reach) {
+    ThrowUnless(options.drives.empty() && options.camera.empty() && options.keyframe.empty(),
+                "--reach goes with -o only, not with --drives, --camera or --keyframe");
+    return InspectReach(options);
+  }
   if (!options.drives.empty()) CheckOutputPath(options.drives);
   const ModelPtr model = LoadEither(options.input);
   ThrowUnless(options.drives.empty() || !ValvesOf(*model).empty(),
@@ -109,6 +132,9 @@ void AddInspectCommand(CLI::App& app, int& exit_code) {
   command->add_option("--camera", options->camera, "camera of the picture (default: an overview)");
   command->add_option("--keyframe", options->keyframe,
                       "posture of the picture (default: the first keyframe)");
+  command->add_flag("--reach", options->reach,
+                    "map of where the right hand can grasp in a scene, in words and with -o as a "
+                    "picture");
   command->callback([options, &exit_code] { exit_code = Inspect(*options); });
 }
 

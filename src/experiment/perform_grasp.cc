@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "experiment/reach_report.h"
 #include "experiment/trajectory_csv.h"
 #include "render/camera_renderer.h"
 #include "render/video_writer.h"
@@ -77,6 +78,7 @@ void RecordPlan(const PlanResult& plan, TrialResult& result) {
   if (!plan.plan) return;
   v["limit_margin"] = plan.limit_margin;
   v["table_clearance_mm"] = 1e3 * plan.table_clearance;
+  v["self_clearance_mm"] = 1e3 * plan.self_clearance;
   v["approach_clearance_mm"] = 1e3 * plan.clearance;
   v["reach_joined"] = plan.join;
   v["free_angle_deg"] = plan.free_angle_deg;
@@ -114,10 +116,9 @@ void RecordPerformance(const Performance& p, const std::string& type, const Perf
   if (p.reached > Phase::kDisturb) v["shake_fraction"] = p.shake_fraction;
 }
 
-}  // namespace
-
-TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
-                         const PerformGraspOptions& options) {
+// From the scene's start posture.
+TrialResult PerformFrom(const Grasp& grasp, const Scene& scene,
+                        const PerformGraspOptions& options) {
   TrialResult result;
   BuildOptions build;
   build.with_looks = false;
@@ -174,6 +175,27 @@ TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
   result.message = verdict.message;
   result.phase = std::string(PhaseName(performance.reached));
   RecordPerformance(performance, grasp.type, perform, result);
+  return result;
+}
+
+}  // namespace
+
+TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
+                         const PerformGraspOptions& options) {
+  const TrialResult result = PerformFrom(grasp, scene, options);
+  const ReachAids aids = AidsOf(scene);
+  if (result.outcome != Outcome::kUnreachable || !(aids.torso || aids.platform)) return result;
+  Scene believed = scene;
+  if (options.believe_truth) believed.objects[0].believed = SceneBelief();
+  const Eigen::Vector3d p_WO = BelieveObject(believed, 0).X_WO.translation();
+  for (const BasePosture& base : MovesIntoReach(scene, aids, p_WO, {})) {
+    Scene moved = scene;
+    for (const auto& [joint, value] : base) moved.start[joint] = value;
+    TrialResult again = PerformFrom(grasp, moved, options);
+    if (again.outcome == Outcome::kUnreachable) continue;
+    for (const auto& [joint, value] : base) again.values["start_" + joint] = value;
+    return again;
+  }
   return result;
 }
 

@@ -23,8 +23,10 @@ struct PerformGraspOptions {
   std::string motion;          // .csv of the generated fingertip motion, if not empty
 };
 
-// `scene`: poses drawn already; the first object is grasped. Fills outcome, message, phase and the
-// values of planning and physics of the result; never throws for what physics does.
+// `scene`: poses drawn already; the first object is grasped. Where it is out of reach and the scene
+// lets torso or platform move (`torso: free`; `platform` active), the robot stands as
+// MovesIntoReach says from the start, recorded as start_<joint>. Fills outcome, message, phase and
+// the values of planning and physics of the result; never throws for what physics does.
 TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
                          const PerformGraspOptions& options);
 

@@ -5,11 +5,12 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "experiment/grasp_requests.h"
 #include "grasp/generate.h"
-#include "kinematics/hand_ik.h"
 #include "kinematics/hand_motion.h"
 #include "kinematics/reach_plan.h"
 #include "kinematics/shape_distance.h"
+#include "kinematics/smooth_hand_ik.h"
 #include "motion/minimum_jerk.h"
 
 namespace springgrasp {
@@ -27,18 +28,6 @@ constexpr double kWaitClearance = 0.015;   // m, between object and waiting fing
 constexpr double kMaxEarlyFlexion = 0.25;  // rad
 constexpr double kFastest = 1.5;           // s, reach of the robot's arm
 
-std::vector<KnownTips> TipsOf(const FingertipMotion& motion) {
-  std::vector<KnownTips> tips(motion.samples.size());
-  for (std::size_t i = 0; i < tips.size(); ++i) {
-    for (int f = 0; f < kNumFingers; ++f) tips[i][f] = motion.samples[i].p_HF[f];
-  }
-  return tips;
-}
-
-std::size_t ContactSample(const FingertipMotion& motion, double dt) {
-  return std::min(motion.samples.size() - 1, static_cast<std::size_t>(std::lround(motion.T / dt)));
-}
-
 // Smallest distance of the open hand from the object over the first `samples` of the way, m.
 double ClearanceOnTheWay(const RobotHand& hand, const Shape& shape, const Pose& X_OW,
                          const std::vector<Pose>& X_WH, const Eigen::VectorXd& q_open,
@@ -51,41 +40,6 @@ double ClearanceOnTheWay(const RobotHand& hand, const Shape& shape, const Pose& 
                                                  {true, true, true, true, true}, true));
   }
   return clearance;
-}
-
-ContactRequest RequestContacts(const HumanHand& human, const RobotHand& hand,
-                               const FingertipMotion& motion, const Eigen::VectorXd& q_human) {
-  ContactRequest contacts;
-  contacts.type = motion.type;
-  contacts.involved = motion.involved;
-  contacts.shape = motion.shape;
-  contacts.p_OC = motion.p_OC;
-  contacts.n_OC = motion.n_OC;
-  contacts.X_OH_human = motion.X_HO.inverse();
-  contacts.X_OG = contacts.X_OH_human * motion.X_HG;
-  contacts.human = TargetFromHuman(human, q_human, hand);
-  return contacts;
-}
-
-HandMotionRequest RequestHandMotion(const FingertipMotion& motion,
-                                    const std::vector<Eigen::VectorXd>& q_human,
-                                    const std::vector<Pose>& X_WH, const Pose& X_WO, double dt) {
-  HandMotionRequest request;
-  request.dt = dt;
-  request.T = motion.T;
-  request.t_switch = motion.t_switch;
-  request.q_human = q_human;
-  request.involved = motion.involved;
-  request.shape = motion.shape;
-  const Pose X_OH = motion.X_HO.inverse();
-  const Pose X_OW = X_WO.inverse();
-  for (std::size_t i = 0; i < motion.samples.size(); ++i) {
-    PerFinger<Eigen::Vector3d> tips;
-    for (int f = 0; f < kNumFingers; ++f) tips[f] = X_OH * motion.samples[i].p_HF[f];
-    request.p_OF.push_back(tips);
-    request.X_OH.push_back(X_OW * X_WH[i]);
-  }
-  return request;
 }
 
 // The chambers fill slower than a human hand closes, so the robot's closing waits for its arm: the
@@ -169,7 +123,8 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
 
     // Where the hand holds the object (independent of where the object stands).
     FingertipMotion motion = GenerateMotion(grasp, generate);
-    std::vector<Eigen::VectorXd> q_human = SolveHandMotion(human, TipsOf(motion));
+    std::vector<Eigen::VectorXd> q_human =
+        SolveHandMotionSmoothly(human, TipsOf(motion), {.dt = dt});
     const ContactRequest contacts =
         RequestContacts(human, body.hand, motion, q_human[ContactSample(motion, dt)]);
     result.posture = SolveContactPosture(body.hand, contacts);
@@ -196,7 +151,8 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
 
     const std::vector<Pose> nominal = path(Pose::Identity());
     const HandMotionResult nominal_hand = MapHandMotion(
-        human, body.hand, RequestHandMotion(motion, q_human, nominal, request.object.X_WO, dt),
+        human, body.hand,
+        RequestHandMotion(motion, q_human, result.posture, nominal, request.object.X_WO, dt),
         result.posture);
     ReachRequest reach;
     reach.shape = generate.shape;
@@ -206,6 +162,7 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     reach.tilt_free = grasp.type != "power";
     reach.table_height = request.table_height;
     reach.table_edge = request.table_edge;
+    reach.body = &body.arm_body;
     reach.q_start = request.arm_start;
     reach.dt = dt;
     reach.T = motion.T;
@@ -231,15 +188,16 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     // The chosen one in full.
     const Pose X_WO = request.object.X_WO * planned.X_OF;
     path(planned.X_OF);
-    q_human = SolveHandMotion(human, TipsOf(motion));
-    const HandMotionResult hand =
-        MapHandMotion(human, body.hand, RequestHandMotion(motion, q_human, planned.X_WH, X_WO, dt),
-                      result.posture);
+    q_human = SolveHandMotionSmoothly(human, TipsOf(motion), {.dt = dt});
+    const HandMotionResult hand = MapHandMotion(
+        human, body.hand,
+        RequestHandMotion(motion, q_human, result.posture, planned.X_WH, X_WO, dt), result.posture);
     result.motion = motion;
     result.mapping_error = hand.mapping_error;
     result.clearance = hand.clearance;
     result.limit_margin = planned.limit_margin;
     result.table_clearance = planned.table_clearance;
+    result.self_clearance = planned.self_clearance;
     result.join = planned.join;
     result.free_angle_deg = RotationDistance(Eigen::Quaterniond::Identity(),
                                              Eigen::Quaterniond(planned.X_OF.linear())) *

@@ -32,6 +32,7 @@ struct PlanResult {
   double mapping_error = 0;    // m, involved fingertips against those wanted, mean over reach
   double limit_margin = 0;     // see ReachPlan
   double table_clearance = 0;  // m
+  double self_clearance = 0;   // m, see ReachPlan
   double join = 0;             // of T: before, the arm comes straight from its start
   double clearance = 0;        // m, hand and object before closing
   double free_angle_deg = 0;   // how far the chosen pose is turned from the demonstrated one

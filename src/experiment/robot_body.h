@@ -1,6 +1,7 @@
 // The robot's own kinematics, and the human hand it compares itself with: what planning knows.
 #pragma once
 
+#include "kinematics/arm_body.h"
 #include "kinematics/arm_ik.h"
 #include "kinematics/human_hand.h"
 #include "kinematics/robot_hand.h"
@@ -9,7 +10,8 @@
 namespace springgrasp {
 
 struct RobotBody {
-  Arm arm;  // world to hand frame H, right side
+  Arm arm;           // world to hand frame H, right side
+  ArmBody arm_body;  // its links, and what of the robot they could hit
   RobotHand hand;
   HumanHand human;  // MMM hand as shipped, kMmmHandLength; planning scales it
 };

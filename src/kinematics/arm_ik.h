@@ -25,11 +25,15 @@ struct Arm {
 Arm MakeArm(const KinematicTree& tree, const std::string& frame, const std::string& prefix,
             const Eigen::VectorXd& q, bool torso = false);
 
+// An arm of the usual kind is solved in closed form (arm_swivel.h), any other by
+// Levenberg-Marquardt (arm_ik_numeric.h).
 struct ArmIkOptions {
+  double limit_weight = 0.02;  // pulls joints towards the middle of their range
+  double near_weight = 0.3;    // per rad^2, of SolveArmIkFromAnywhere's `near`
+  double margin = 0.02;        // rad, kept from the limits
+  // Of the numeric solver.
   double position_tolerance = 1e-4;  // m
   double rotation_tolerance = 1e-3;  // rad
-  double limit_weight = 0.02;        // pulls joints towards the middle of their range
-  double margin = 0.02;              // rad, kept from the limits
   int max_iterations = 60;
   int starts = 24;  // of SolveArmIkFromAnywhere
 };
@@ -37,13 +41,14 @@ struct ArmIkOptions {
 // Pose X_WH at the arm's joint values (size num_joints).
 Pose HandPose(const Arm& arm, const Eigen::VectorXd& q);
 
-// Nearest solution from a start; nullopt: not reached within the tolerances.
+// The solution nearest to a start, a little drawn to mid range; nullopt: out of reach (numeric: not
+// reached within the tolerances from there).
 std::optional<Eigen::VectorXd> SolveArmIk(const Arm& arm, const Pose& X_WH,
                                           const Eigen::VectorXd& start,
                                           const ArmIkOptions& options = {});
 
-// Several deterministic starts; the solution farthest from its joint limits (and nearest to
-// `near` if given, which is also the first start).
+// Of all solutions the one that is far from its joint limits, has its elbow low, and is near to
+// `near` if given.
 std::optional<Eigen::VectorXd> SolveArmIkFromAnywhere(
     const Arm& arm, const Pose& X_WH, const ArmIkOptions& options = {},
     const std::optional<Eigen::VectorXd>& near = std::nullopt);

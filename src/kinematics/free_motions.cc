@@ -10,6 +10,8 @@ namespace springgrasp {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kForearmRadius = 0.047;      // m (models/armar3b)
+constexpr double kWristRadius = 0.03;         // m
 constexpr double kSquare = 0.002;             // m, sides as equal as this are equal
 constexpr double kRoll = 20 * kPi / 180;      // rad, about G's z (spheres)
 constexpr double kTiltStep = 10 * kPi / 180;  // rad
@@ -80,6 +82,30 @@ double HandAboveTable(const RobotHand& hand, const Pose& X_WH, const Eigen::Vect
       if (p_W.y() + c.radius < table_edge) continue;
       lowest = std::min(lowest, p_W.z() - c.radius - table_height);
     }
+  }
+  return lowest;
+}
+
+double ForearmAboveTable(const Arm& arm, const Eigen::VectorXd& q, double table_height,
+                         double table_edge) {
+  Eigen::VectorXd full = arm.q;
+  for (int i = 0; i < arm.num_joints(); ++i) full[arm.joints[i]] = q[i];
+  std::vector<Pose> X_WB;
+  ForwardKinematics(arm.tree, full, X_WB);
+  const Eigen::Vector3d p_hand = FramePose(arm.tree, X_WB, arm.frame).translation();
+  // The elbow: the farthest of the last joints' bodies that is not yet the wrist.
+  Eigen::Vector3d p_elbow = p_hand;
+  for (int b = arm.tree.frames[arm.frame].node; b >= 0; b = arm.tree.nodes[b].parent) {
+    p_elbow = X_WB[b].translation();
+    if ((p_elbow - p_hand).norm() > 0.1) break;
+  }
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= 6; ++i) {
+    const double s = i / 6.0;
+    const Eigen::Vector3d p = p_elbow + s * (p_hand - p_elbow);
+    const double radius = kForearmRadius + s * (kWristRadius - kForearmRadius);
+    if (p.y() + radius < table_edge) continue;
+    lowest = std::min(lowest, p.z() - radius - table_height);
   }
   return lowest;
 }

@@ -1,14 +1,15 @@
 #include "kinematics/hand_mapping.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <nlopt.hpp>
 #include <numbers>
 
+#include "base/error.h"
 #include "base/random.h"
-#include "kinematics/levenberg_marquardt.h"
+#include "kinematics/fast_hand.h"
 
 namespace springgrasp {
 namespace {
@@ -20,100 +21,239 @@ const std::array<Eigen::Vector2d, 4> kOtherStarts = {
     Eigen::Vector2d(0.1, 0.9), Eigen::Vector2d(0.9, 0.1), Eigen::Vector2d(0.3, 0.3),
     Eigen::Vector2d(0.8, 0.8)};  // of the ranges of j0, j1
 
-// The residuals of MappingOptions' table, with scratch space.
+// The sum of squares of MappingOptions' table over one angle per valve, with scratch space.
 class MappingProblem {
  public:
   MappingProblem(const RobotHand& robot, const MappingTarget& target,
-                 const Eigen::VectorXd& previous, const MappingOptions& options)
+                 const Eigen::VectorXd& previous, const MappingOptions& options, FastHand& hand)
       : robot_(robot),
         target_(target),
         previous_(previous),
         options_(options),
-        J_full_(6, robot.tree.num_joints()) {
-    smooth_ = previous.size() == robot.tree.num_joints() && options.smoothness > 0;
-    num_rows_ = 5 * kNumFingers + (robot.palm >= 0 ? 1 : 0) + (robot.opposition >= 0 ? 1 : 0);
-    for (const std::vector<int>& valve : robot.valves) {
-      const int n = static_cast<int>(valve.size());
-      num_rows_ += n * (n - 1) / 2;
+        q_(robot.open),
+        hand_(hand) {
+    lower.setZero();
+    upper.setZero();
+    for (int v = 0; v < num_valves(); ++v) {
+      lower[v] = -std::numeric_limits<double>::infinity();
+      upper[v] = -lower[v];
+      for (const int j : robot.valves[v]) {
+        lower[v] = std::max(lower[v], robot.tree.lower[j]);
+        upper[v] = std::min(upper[v], robot.tree.upper[j]);
+      }
     }
-    if (smooth_) num_rows_ += robot.tree.num_joints();
+    warm_ = previous.size() == robot.tree.num_joints();
+    if (warm_ && options.max_step > 0) {
+      const ValveAngles from = Valves(previous).cwiseMax(lower).cwiseMin(upper);
+      lower = lower.cwiseMax((from.array() - options.max_step).matrix());
+      upper = upper.cwiseMin((from.array() + options.max_step).matrix());
+    }
   }
 
-  int num_rows() const { return num_rows_; }
+  int num_valves() const { return static_cast<int>(robot_.valves.size()); }
+  bool warm() const { return warm_; }
 
-  void Evaluate(const Eigen::VectorXd& q, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
-    ForwardKinematics(robot_.tree, q, X_HB_);
-    if (J != nullptr) J->setZero();
-    int row = 0;
+  // Joints of one chamber feel equal torque against equal springs: one angle.
+  const Eigen::VectorXd& Joints(const ValveAngles& x) {
+    for (int v = 0; v < num_valves(); ++v) {
+      for (const int j : robot_.valves[v]) q_[j] = x[v];
+    }
+    return q_;
+  }
+
+  // The valves' angles nearest to joint angles: the mean of their joints.
+  ValveAngles Valves(const Eigen::VectorXd& q) const {
+    ValveAngles x = ValveAngles::Zero();
+    for (int v = 0; v < num_valves(); ++v) {
+      double sum = 0;
+      for (const int j : robot_.valves[v]) sum += q[j];
+      x[v] = sum / static_cast<double>(robot_.valves[v].size());
+    }
+    return x;
+  }
+
+  // Where the mapping starts: from the previous frame, or from the human's angles.
+  ValveAngles Start() const {
+    if (warm_) return Valves(previous_).cwiseMax(lower).cwiseMin(upper);
+    Eigen::VectorXd q = robot_.open;
+    for (int f = 0; f < kNumFingers; ++f) {
+      q[robot_.fingers[f].j0] = target_.sigma[f][0];
+      q[robot_.fingers[f].j1] = target_.sigma[f][1];
+    }
+    if (robot_.palm >= 0) q[robot_.palm] = options_.palm_wanted;
+    if (robot_.opposition >= 0) q[robot_.opposition] = target_.opposition;
+    return Valves(q).cwiseMax(lower).cwiseMin(upper);
+  }
+
+  // S' of Eq. 15 with our own rows: the sum of squares |r|^2; A = J'J and g = J'r where wanted.
+  double Evaluate(const ValveAngles& x, ValveMatrix* A, ValveAngles* g) {
+    Joints(x);
+    hand_.Move(x);
+    if (A != nullptr) {
+      A->setZero();
+      for (int v = num_valves(); v < kMostValves; ++v) (*A)(v, v) = 1;
+    }
+    if (g != nullptr) g->setZero();
+    double cost = 0;
+    const auto add = [&](double weight, int joint, double wanted) {
+      const int v = robot_.valve_of[joint];
+      const double r = weight * (q_[joint] - wanted);
+      cost += r * r;
+      if (A != nullptr) (*A)(v, v) += weight * weight;
+      if (g != nullptr) (*g)[v] += weight * r;
+    };
     for (int f = 0; f < kNumFingers; ++f) {
       const RobotHand::Finger& finger = robot_.fingers[f];
-      r[row] = (q[finger.j0] - target_.sigma[f][0]) * kJointScale;
-      r[row + 1] = (q[finger.j1] - target_.sigma[f][1]) * kJointScale;
-      const double scale = std::sqrt(target_.lambda[f] / 3) / (2 * finger.length);
-      r.segment<3>(row + 2) =
-          scale * (FramePose(robot_.tree, X_HB_, finger.tip).translation() - target_.p_HF[f]);
-      if (J != nullptr) {
-        (*J)(row, finger.j0) = kJointScale;
-        (*J)(row + 1, finger.j1) = kJointScale;
-        FrameJacobian(robot_.tree, X_HB_, finger.tip, J_full_);
-        J->middleRows<3>(row + 2) = scale * J_full_.topRows<3>();
-      }
-      row += 5;
+      add(kJointScale, finger.j0, target_.sigma[f][0]);
+      add(kJointScale, finger.j1, target_.sigma[f][1]);
+      AddTip(f, A, g, cost);
     }
-    const auto add = [&](double weight, int a, double wanted) {
-      r[row] = weight * (q[a] - wanted);
-      if (J != nullptr) (*J)(row, a) = weight;
-      ++row;
-    };
     if (robot_.palm >= 0) add(options_.palm_weight / kPi, robot_.palm, options_.palm_wanted);
     if (robot_.opposition >= 0) add(kJointScale, robot_.opposition, target_.opposition);
-    for (const std::vector<int>& valve : robot_.valves) {
-      for (std::size_t a = 0; a < valve.size(); ++a) {
-        for (std::size_t b = a + 1; b < valve.size(); ++b) {
-          const int k = row;
-          add(options_.coupling_weight / kPi, valve[a], q[valve[b]]);
-          if (J != nullptr) (*J)(k, valve[b]) = -options_.coupling_weight / kPi;
-        }
-      }
-    }
-    if (smooth_) {
+    if (warm_ && options_.smoothness > 0) {
       for (int j = 0; j < robot_.tree.num_joints(); ++j) {
         add(options_.smoothness / kPi, j, previous_[j]);
       }
     }
+    return cost;
   }
 
+  // Of the tips at the last evaluation, m^2.
+  const PerFinger<double>& squared_tip_errors() const { return squared_tip_errors_; }
+
+  ValveAngles lower, upper;  // of the valves' angles, rad
+
  private:
+  Eigen::Vector3d TipError(int f) const {
+    const KinematicTree::Frame& frame = robot_.tree.frames[robot_.fingers[f].tip];
+    const FastHand::Body& body = hand_.body(frame.node);
+    return body.R_HB * frame.X_BF.translation() + body.p_HB - target_.p_HF[f];
+  }
+
+  // The position term of a finger, by the joints between its tip and H.
+  void AddTip(int f, ValveMatrix* A, ValveAngles* g, double& cost) {
+    constexpr int kMostJoints = 8;
+    const RobotHand::Finger& finger = robot_.fingers[f];
+    const Eigen::Vector3d e = TipError(f);
+    const double weight = target_.lambda[f] / (3 * 4 * finger.length * finger.length);
+    squared_tip_errors_[f] = e.squaredNorm();
+    cost += weight * squared_tip_errors_[f];
+    if (g == nullptr) return;
+    const Eigen::Vector3d p_HF = e + target_.p_HF[f];
+    std::array<Eigen::Vector3d, kMostJoints> column;
+    std::array<int, kMostJoints> valve;
+    int count = 0;
+    for (int b = robot_.tree.frames[finger.tip].node; b >= 0; b = hand_.body(b).parent) {
+      const FastHand::Body& body = hand_.body(b);
+      if (body.valve < 0 || count == kMostJoints) continue;
+      column[count] = (body.R_HB * body.axis).cross(p_HF - body.p_HB);
+      valve[count++] = body.valve;
+    }
+    for (int i = 0; i < count; ++i) {
+      (*g)[valve[i]] += weight * column[i].dot(e);
+      if (A == nullptr) continue;
+      for (int j = 0; j < count; ++j) {
+        (*A)(valve[i], valve[j]) += weight * column[i].dot(column[j]);
+      }
+    }
+  }
+
   const RobotHand& robot_;
   const MappingTarget& target_;
   const Eigen::VectorXd& previous_;
   const MappingOptions& options_;
-  bool smooth_ = false;
-  int num_rows_ = 0;
-  std::vector<Pose> X_HB_;
-  Eigen::MatrixXd J_full_;
+  bool warm_ = false;
+  Eigen::VectorXd q_;
+  FastHand& hand_;
+  PerFinger<double> squared_tip_errors_ = {};
 };
 
-Eigen::VectorXd StartFromSigma(const RobotHand& robot, const MappingTarget& target,
-                               const MappingOptions& options) {
-  Eigen::VectorXd q = robot.open;
+struct MappingSolution {
+  ValveAngles x;
+  double cost = 0;
+  PerFinger<double> squared_tip_errors = {};
+};
+
+MappingResult ResultOf(MappingProblem& problem, const MappingSolution& solution) {
+  MappingResult result;
+  result.q = problem.Joints(solution.x);
+  result.cost = solution.cost;
   for (int f = 0; f < kNumFingers; ++f) {
-    q[robot.fingers[f].j0] = target.sigma[f][0];
-    q[robot.fingers[f].j1] = target.sigma[f][1];
+    result.tip_error[f] = std::sqrt(solution.squared_tip_errors[f]);
   }
-  if (robot.palm >= 0) q[robot.palm] = options.palm_wanted;
-  if (robot.opposition >= 0) q[robot.opposition] = target.opposition;
-  return q.cwiseMax(robot.tree.lower).cwiseMin(robot.tree.upper);
+  return result;
 }
 
-MappingResult Finish(const RobotHand& robot, const MappingTarget& target, Eigen::VectorXd q,
-                     double cost) {
-  MappingResult result;
-  const PerFinger<Eigen::Vector3d> tips = TipPositions(robot, q);
-  for (int f = 0; f < kNumFingers; ++f) result.tip_error[f] = (tips[f] - target.p_HF[f]).norm();
-  result.q = std::move(q);
-  result.cost = cost;
-  return result;
+// Projected Levenberg-Marquardt as in levenberg_marquardt.h, on the normal equations alone.
+MappingSolution Minimize(MappingProblem& problem, const ValveAngles& start, int max_iterations) {
+  constexpr double kStep = 1e-5;      // rad, where it ends
+  constexpr double kGradient = 1e-9;  // of the cost, per rad
+  MappingSolution best;
+  best.x = start;
+  ValveMatrix A, damped, A_trial;
+  ValveAngles g, g_trial;
+  best.cost = problem.Evaluate(best.x, &A, &g);
+  best.squared_tip_errors = problem.squared_tip_errors();
+  double damping = 1e-4, growth = 2;
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    double largest = 0;
+    damped = A;
+    ValveAngles slope = g;
+    for (int i = 0; i < kMostValves; ++i) {
+      const bool held = (best.x[i] <= problem.lower[i] && slope[i] > 0) ||
+                        (best.x[i] >= problem.upper[i] && slope[i] < 0);
+      if (held) {
+        slope[i] = 0;
+        damped.row(i).setZero();
+        damped.col(i).setZero();
+        damped(i, i) = 1;
+      }
+      largest = std::max(largest, std::abs(slope[i]));
+    }
+    if (largest < kGradient) return best;
+    const ValveAngles diagonal = damped.diagonal();
+    for (int attempt = 0;; ++attempt) {
+      if (attempt == 30) return best;
+      damped.diagonal() = (1 + damping) * diagonal;
+      const ValveAngles x =
+          (best.x - damped.llt().solve(slope)).cwiseMax(problem.lower).cwiseMin(problem.upper);
+      if (!((x - best.x).cwiseAbs().maxCoeff() > kStep)) return best;
+      const double cost = problem.Evaluate(x, &A_trial, &g_trial);
+      if (cost < best.cost) {
+        best.x = x;
+        best.cost = cost;
+        best.squared_tip_errors = problem.squared_tip_errors();
+        A = A_trial;
+        g = g_trial;
+        damping = std::max(damping / 10, 1e-12);
+        growth = 2;
+        break;
+      }
+      damping = std::max(damping, 1e-12) * growth;
+      growth *= 2;
+    }
+  }
+  return best;
+}
+
+MappingResult MapFrame(const RobotHand& robot, const MappingTarget& target,
+                       const Eigen::VectorXd& previous, const MappingOptions& options,
+                       FastHand& hand) {
+  MappingProblem problem(robot, target, previous, options, hand);
+  MappingSolution solution = Minimize(problem, problem.Start(), options.max_iterations);
+  // The position term has two basins per finger (bent at the knuckle or at the middle joint): a
+  // cold start looks into the other ones too.
+  for (int f = 0; f < kNumFingers && !problem.warm(); ++f) {
+    const int v0 = robot.valve_of[robot.fingers[f].j0], v1 = robot.valve_of[robot.fingers[f].j1];
+    for (const Eigen::Vector2d& part : kOtherStarts) {
+      ValveAngles start = solution.x;
+      start[v0] = problem.lower[v0] + part[0] * (problem.upper[v0] - problem.lower[v0]);
+      start[v1] = problem.lower[v1] + part[1] * (problem.upper[v1] - problem.lower[v1]);
+      const MappingSolution other = Minimize(problem, start, options.max_iterations);
+      if (other.cost < solution.cost) solution = other;
+    }
+  }
+  return ResultOf(problem, solution);
 }
 
 }  // namespace
@@ -149,77 +289,60 @@ MappingTarget TargetFromHuman(const HumanHand& human, const Eigen::VectorXd& q_h
 
 MappingResult MapHand(const RobotHand& robot, const MappingTarget& target,
                       const Eigen::VectorXd& previous, const MappingOptions& options) {
-  MappingProblem rows(robot, target, previous, options);
-  LeastSquaresProblem problem;
-  problem.num_residuals = rows.num_rows();
-  problem.lower = robot.tree.lower;
-  problem.upper = robot.tree.upper;
-  problem.evaluate = [&rows](const Eigen::VectorXd& q, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
-    rows.Evaluate(q, r, J);
-  };
-  LevenbergMarquardtOptions solver;
-  solver.max_iterations = options.max_iterations;
-  solver.gradient_tolerance = 1e-12;
-  solver.step_tolerance = 1e-9;
-  const bool warm = previous.size() == robot.tree.num_joints();
-  LevenbergMarquardtResult solution = MinimizeLeastSquares(
-      problem, warm ? previous : StartFromSigma(robot, target, options), solver);
-  // The position term has two basins per finger (bent at the knuckle or at the middle joint): a
-  // cold start looks into the other ones too.
-  for (int f = 0; f < kNumFingers && !warm; ++f) {
-    const RobotHand::Finger& finger = robot.fingers[f];
-    for (const Eigen::Vector2d& part : kOtherStarts) {
-      Eigen::VectorXd start = solution.x;
-      const auto at = [&](int j, double s) {
-        return robot.tree.lower[j] + s * (robot.tree.upper[j] - robot.tree.lower[j]);
-      };
-      start[finger.j0] = at(finger.j0, part[0]);
-      start[finger.j1] = at(finger.j1, part[1]);
-      const LevenbergMarquardtResult other = MinimizeLeastSquares(problem, start, solver);
-      if (other.cost < solution.cost) solution = other;
-    }
+  FastHand hand(robot);
+  return MapFrame(robot, target, previous, options, hand);
+}
+
+std::vector<MappingResult> MapHandAlong(const RobotHand& robot,
+                                        const std::vector<MappingTarget>& targets, int anchor,
+                                        const MappingOptions& options) {
+  const int n = static_cast<int>(targets.size());
+  std::vector<MappingResult> results(targets.size());
+  if (n == 0) return results;
+  FastHand hand(robot);
+  anchor = std::clamp(anchor, 0, n - 1);
+  results[anchor] = MapFrame(robot, targets[anchor], {}, options, hand);
+  for (int k = anchor - 1; k >= 0; --k) {
+    results[k] = MapFrame(robot, targets[k], results[k + 1].q, options, hand);
   }
-  return Finish(robot, target, solution.x, 2 * solution.cost);
+  for (int k = anchor + 1; k < n; ++k) {
+    results[k] = MapFrame(robot, targets[k], results[k - 1].q, options, hand);
+  }
+  return results;
 }
 
 MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target, int starts,
-                             const MappingOptions& options) {
-  const Eigen::VectorXd no_previous;
-  MappingProblem rows(robot, target, no_previous, options);
-  const int n = robot.tree.num_joints();
-  Eigen::VectorXd q(n), r(rows.num_rows());
-  Eigen::MatrixXd J(rows.num_rows(), n);
+                             const Eigen::VectorXd& previous, const MappingOptions& options) {
+  FastHand hand(robot);
+  MappingProblem problem(robot, target, previous, options, hand);
+  const int n = problem.num_valves();
   nlopt::opt solver(nlopt::LD_SLSQP, static_cast<unsigned>(n));
-  const nlopt::vfunc cost = [](const std::vector<double>& x, std::vector<double>& gradient,
-                               void* context) {
-    return (*static_cast<std::function<double(const std::vector<double>&, std::vector<double>&)>*>(
-        context))(x, gradient);
+  const nlopt::vfunc objective = [](const std::vector<double>& x, std::vector<double>& gradient,
+                                    void* context) {
+    ValveAngles angles = ValveAngles::Zero();
+    std::copy(x.begin(), x.end(), angles.data());
+    ValveAngles g;
+    const double cost = static_cast<MappingProblem*>(context)->Evaluate(
+        angles, nullptr, gradient.empty() ? nullptr : &g);
+    for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] = 2 * g[i];
+    return cost;
   };
-  std::function<double(const std::vector<double>&, std::vector<double>&)> evaluate =
-      [&](const std::vector<double>& x, std::vector<double>& gradient) {
-        q = Eigen::Map<const Eigen::VectorXd>(x.data(), n);
-        rows.Evaluate(q, r, gradient.empty() ? nullptr : &J);
-        if (!gradient.empty()) {
-          Eigen::Map<Eigen::VectorXd>(gradient.data(), n) = 2 * J.transpose() * r;
-        }
-        return r.squaredNorm();
-      };
-  solver.set_min_objective(cost, &evaluate);
-  const auto bound = [n](const Eigen::VectorXd& v) {
+  solver.set_min_objective(objective, &problem);
+  const auto as_vector = [n](const ValveAngles& v) {
     return std::vector<double>(v.data(), v.data() + n);
   };
-  solver.set_lower_bounds(bound(robot.tree.lower));
-  solver.set_upper_bounds(bound(robot.tree.upper));
-  solver.set_xtol_rel(1e-10);
-  solver.set_ftol_rel(1e-14);
+  solver.set_lower_bounds(as_vector(problem.lower));
+  solver.set_upper_bounds(as_vector(problem.upper));
+  solver.set_xtol_abs(1e-5);
+  solver.set_ftol_rel(1e-12);
   solver.set_maxeval(500);
   RandomEngine engine = MakeStream(0, 0, "mapping yardstick");
-  std::vector<double> best(n), x(n);
-  double best_cost = std::numeric_limits<double>::infinity();
+  MappingSolution best;
+  best.cost = std::numeric_limits<double>::infinity();
   for (int s = 0; s < starts; ++s) {
-    const Eigen::VectorXd start = StartFromSigma(robot, target, options);
-    for (int j = 0; j < n; ++j) {
-      x[j] = s == 0 ? start[j] : Uniform(engine, robot.tree.lower[j], robot.tree.upper[j]);
+    std::vector<double> x = as_vector(problem.Start());
+    for (int v = 0; v < n && s > 0; ++v) {
+      x[v] = Uniform(engine, problem.lower[v], problem.upper[v]);
     }
     double found = 0;
     try {
@@ -227,14 +350,12 @@ MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target
     } catch (const std::runtime_error&) {
       // Round-off at the optimum: x is still the best point so far.
     }
-    std::vector<double> none;
-    found = evaluate(x, none);
-    if (found < best_cost) {
-      best_cost = found;
-      best = x;
-    }
+    ValveAngles angles = ValveAngles::Zero();
+    std::copy(x.begin(), x.end(), angles.data());
+    const double cost = problem.Evaluate(angles, nullptr, nullptr);
+    if (cost < best.cost) best = {angles, cost, problem.squared_tip_errors()};
   }
-  return Finish(robot, target, Eigen::Map<Eigen::VectorXd>(best.data(), n), best_cost);
+  return ResultOf(problem, best);
 }
 
 }  // namespace springgrasp

@@ -26,13 +26,15 @@ struct MappingTarget {
 //   3 per finger  sqrt(lambda) (p_wanted - p) / (2 l_finger sqrt(3))                Eq. 14
 //   palm          palm_weight (q_palm - palm_wanted) / pi                           ours
 //   opposition    (q - opposition) / (pi sqrt(n)), if the hand has the joint        ours
-//   pairs of joints on one valve coupling_weight (q_a - q_b) / pi                   ours
-//   11            smoothness (q - q_previous) / pi, if warm-started                 ours, off
+//   every joint   smoothness (q - q_previous) / pi, if warm-started                 ours, off
+// The unknowns are one angle per valve: joints of one chamber feel equal torque against equal
+// springs, so that ring finger and pinkie bend all four joints alike. The palm moves four fingers,
+// so that all fingers are solved at once.
 struct MappingOptions {
   double palm_weight = 1;
-  double palm_wanted = 0;        // rad
-  double coupling_weight = 0.1;  // joints of one valve feel equal torque, so about equal angles
+  double palm_wanted = 0;  // rad
   double smoothness = 0;
+  double max_step = 0;  // rad, of any joint from `previous` (bounds, as Eq. 16); 0: no limit
   int max_iterations = 60;
 };
 
@@ -51,8 +53,15 @@ MappingTarget TargetFromHuman(const HumanHand& human, const Eigen::VectorXd& q_h
 MappingResult MapHand(const RobotHand& robot, const MappingTarget& target,
                       const Eigen::VectorXd& previous = {}, const MappingOptions& options = {});
 
-// The same problem by NLopt (SLSQP) from several deterministic starts: the yardstick of tests.
+// A whole trajectory: frame `anchor` from cold (the contact, where the posture matters), the others
+// from there to both ends, each started from its neighbour.
+std::vector<MappingResult> MapHandAlong(const RobotHand& robot,
+                                        const std::vector<MappingTarget>& targets, int anchor,
+                                        const MappingOptions& options = {});
+
+// The same problem by NLopt (SLSQP): started as MapHand is, and from starts - 1 random ones.
 MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target, int starts,
+                             const Eigen::VectorXd& previous = {},
                              const MappingOptions& options = {});
 
 }  // namespace springgrasp

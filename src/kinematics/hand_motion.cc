@@ -38,6 +38,39 @@ void Smooth(std::vector<T>& series, int half) {
   }
 }
 
+// Samples to each side of the final moving average.
+int SmoothingHalf(double dt) { return std::max(1, static_cast<int>(kSmoothing / 2 / dt)); }
+
+// The average reaches two half widths back: contact is planned that much before T.
+double ContactTime(const HandMotionRequest& request) {
+  return request.T - 2 * SmoothingHalf(request.dt) * request.dt;
+}
+
+// 0: human-like, 1: on the contacts.
+double ContactBlend(const HandMotionRequest& request, int k) {
+  const double t_contact = ContactTime(request);
+  const double t_close = std::min(request.t_switch, 0.7 * t_contact);
+  return MinimumJerkPosition((request.dt * k - t_close) / (t_contact - t_close));
+}
+
+// The springs open a hand wider than a finger reaches, and near its full length a finger has to
+// move its joints ever faster to follow. Wanted tips beyond kFree of its length, in the plane in
+// which it bends, are drawn in smoothly, at most to kLongest.
+Eigen::Vector3d DrawnIn(const RobotHand& robot, const std::vector<Pose>& X_HB, int finger,
+                        const Eigen::Vector3d& p_HF) {
+  constexpr double kFree = 0.8, kLongest = 0.95;
+  const RobotHand::Finger& f = robot.fingers[finger];
+  const Pose& X_HBase = X_HB[f.base];
+  const Eigen::Vector3d axis = X_HBase.linear() * robot.tree.nodes[f.base].axis;
+  const Eigen::Vector3d reach = p_HF - X_HBase.translation();
+  const Eigen::Vector3d beside = axis.dot(reach) * axis, in_plane = reach - beside;
+  const double r = in_plane.norm() / f.length;
+  if (r <= kFree) return p_HF;
+  const double room = kLongest - kFree;
+  const double drawn = kFree + room * std::tanh((r - kFree) / room);
+  return X_HBase.translation() + beside + drawn / r * in_plane;
+}
+
 // How far one finger must open (0..1 towards `q_open`) at each sample to stay clear. What even the
 // open finger does not have is not asked.
 std::vector<double> Openings(const RobotHand& robot, const HandMotionRequest& request,
@@ -116,41 +149,61 @@ Eigen::VectorXd OpenedPosture(const RobotHand& robot, const ContactPosture& post
   return q;
 }
 
-HandMotionResult MapHandMotion(const HumanHand& human, const RobotHand& robot,
-                               const HandMotionRequest& request, const ContactPosture& posture,
-                               const HandMotionOptions& options) {
+std::vector<MappingTarget> MappingTargets(const HumanHand& human, const RobotHand& robot,
+                                          const HandMotionRequest& request,
+                                          const HandMotionOptions& options) {
   const int n = static_cast<int>(request.q_human.size());
-  ThrowUnless(n > 0 && request.p_OF.size() == request.q_human.size() &&
+  ThrowUnless(n > 0 && request.p_HF.size() == request.q_human.size() &&
                   request.X_OH.size() == request.q_human.size(),
               "a hand motion needs as many joint samples ({}) as fingertips ({}) and hand poses "
               "({})",
-              request.q_human.size(), request.p_OF.size(), request.X_OH.size());
+              request.q_human.size(), request.p_HF.size(), request.X_OH.size());
   ThrowUnless(request.dt > 0 && request.T > 0, "a hand motion needs a positive step and duration");
-  // The average below reaches two half widths back: contact is planned that much before T.
-  const int half = std::max(1, static_cast<int>(kSmoothing / 2 / request.dt));
-  const double t_contact = request.T - 2 * half * request.dt;
-  const double t_close = std::min(request.t_switch, 0.7 * t_contact);
-
-  HandMotionResult result;
-  double error = 0, count = 0;
-  Eigen::VectorXd previous;
+  std::vector<Pose> X_HB;
+  ForwardKinematics(robot.tree, robot.open, X_HB);
+  // What drawing in would take from the contacts is given back.
+  const int contact = std::min(n - 1, static_cast<int>(std::lround(request.T / request.dt)));
+  PerFinger<Eigen::Vector3d> back;
+  for (int f = 0; f < kNumFingers; ++f) {
+    back[f] = request.p_HF[contact][f] - DrawnIn(robot, X_HB, f, request.p_HF[contact][f]);
+  }
+  std::vector<MappingTarget> targets;
   for (int k = 0; k < n; ++k) {
-    const double blend = MinimumJerkPosition((request.dt * k - t_close) / (t_contact - t_close));
+    const double blend = ContactBlend(request, k);
     MappingTarget target = TargetFromHuman(human, request.q_human[k], robot);
     for (int f = 0; f < kNumFingers; ++f) {
       if (!request.involved[f]) continue;
-      const Eigen::Vector3d p_HF = request.X_OH[k].inverse() * request.p_OF[k][f];
-      target.p_HF[f] += blend * (p_HF - target.p_HF[f]);
-      target.lambda[f] = std::pow(options.lambda_contact, blend);
+      target.p_HF[f] += blend * (request.p_HF[k][f] - target.p_HF[f]);
+      target.p_HF[f] = DrawnIn(robot, X_HB, f, target.p_HF[f]) + blend * back[f];
+      target.lambda[f] = std::pow(options.lambda_contact, blend * blend * blend);
     }
-    const MappingResult mapped = MapHand(robot, target, previous, options.mapping);
-    previous = mapped.q;
+    targets.push_back(target);
+  }
+  return targets;
+}
+
+HandMotionResult MapHandMotion(const HumanHand& human, const RobotHand& robot,
+                               const HandMotionRequest& request, const ContactPosture& posture,
+                               const HandMotionOptions& options) {
+  const std::vector<MappingTarget> targets = MappingTargets(human, robot, request, options);
+  const int n = static_cast<int>(targets.size());
+  const int half = SmoothingHalf(request.dt);
+  const double t_contact = ContactTime(request);
+
+  MappingOptions mapping = options.mapping;
+  mapping.max_step = options.max_speed * request.dt;
+  HandMotionResult result;
+  double error = 0, count = 0;
+  const std::vector<MappingResult> along =
+      MapHandAlong(robot, targets, static_cast<int>(std::lround(request.T / request.dt)), mapping);
+  for (int k = 0; k < n; ++k) {
+    const MappingResult& mapped = along[k];
     for (int f = 0; f < kNumFingers; ++f) {
       if (!request.involved[f]) continue;
       error += mapped.tip_error[f];
       count += 1;
     }
-    result.q.push_back(mapped.q + blend * (posture.q - mapped.q));
+    result.q.push_back(mapped.q + ContactBlend(request, k) * (posture.q - mapped.q));
   }
   result.mapping_error = count > 0 ? error / count : 0;
 

@@ -19,9 +19,11 @@ struct HandMotionRequest {
   double dt = 0.005;                             // s
   double T = 1;                                  // s, end of the reach: contact
   double t_switch = 0.5;                         // s, closing begins (Eq. 7)
-  std::vector<Eigen::VectorXd> q_human;          // MMM hand, rad (SolveHandMotion)
-  std::vector<PerFinger<Eigen::Vector3d>> p_OF;  // human fingertips in O: X_OH(t) p_HF(t), m
-  std::vector<Pose> X_OH;                        // the ROBOT's hand in O: X_OG(t) X_HG(robot)^-1
+  std::vector<Eigen::VectorXd> q_human;  // MMM hand, rad (SolveHandMotion)
+  // Where the robot's tips belong when they near the object, in the ROBOT's H, m: the human ones
+  // about the object as the robot holds it, X_HO(robot) X_OH(human, T) p_HF(t).
+  std::vector<PerFinger<Eigen::Vector3d>> p_HF;
+  std::vector<Pose> X_OH;  // the ROBOT's hand in O: X_OG(t) X_HG(robot)^-1
   PerFinger<bool> involved = {};
   Shape shape;
 };
@@ -41,6 +43,14 @@ struct HandMotionResult {
   double clearance = 0;                          // m, smallest before closing begins
   double mapping_error = 0;                      // m, mean tip error to the wanted ones (involved)
 };
+
+// What MapHandMotion asks of the mapping at each sample: the human posture and its scaled tips with
+// lambda = 1, and from t_switch on, for the involved fingers, more and more the tips of the request
+// with a weight that rises to lambda_contact. Tips near or beyond the end of a finger's reach are
+// drawn in smoothly, the contacts excepted.
+std::vector<MappingTarget> MappingTargets(const HumanHand& human, const RobotHand& robot,
+                                          const HandMotionRequest& request,
+                                          const HandMotionOptions& options = {});
 
 HandMotionResult MapHandMotion(const HumanHand& human, const RobotHand& robot,
                                const HandMotionRequest& request, const ContactPosture& posture,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "kinematics/swivel_path.h"
 #include "motion/minimum_jerk.h"
 
 namespace springgrasp {
@@ -88,42 +89,86 @@ std::optional<ReachPath> Join(const Arm& arm, const ReachPathRequest& request,
   return path;
 }
 
+int JoinStride(const ReachPathRequest& request) { return std::max(1, request.latest_join / 12); }
+
+int LastJoin(const ReachPathRequest& request) {
+  return std::min(request.latest_join, static_cast<int>(request.X_WH.size()) - 2);
+}
+
+bool BeginsAtStart(const Arm& arm, const ReachPathRequest& request) {
+  return request.q_start && SamePose(HandPose(arm, *request.q_start), request.X_WH.front());
+}
+
+// The whole way if the joints are slow enough, else the reason in `path`.
+bool TakeWhole(const ReachPathRequest& request, const ArmPath& whole, ReachPath& path) {
+  path.reason = whole.reason;
+  if (!whole.complete) return false;
+  const double speed = LargestSpeed(whole.q, request.dt);
+  if (speed > request.max_speed) {
+    path.reason = fmt::format("the reach asks for {:.1f} rad/s of a joint, allowed are {:.1f}",
+                              speed, request.max_speed);
+    return false;
+  }
+  path.q = whole.q;
+  path.X_WH = request.X_WH;
+  path.complete = true;
+  return true;
+}
+
+ReachPath FollowNumerically(const Arm& arm, const ReachPathRequest& request) {
+  const std::vector<Pose> reversed(request.X_WH.rbegin(), request.X_WH.rend());
+  ArmPath tracked = TrackArmPath(arm, reversed, request.q_goal, kBigStep);
+  std::reverse(tracked.q.begin(), tracked.q.end());
+  ReachPath path;
+  path.reason = tracked.reason;
+  if (tracked.complete &&
+      TakeWhole(request,
+                BeginsAtStart(arm, request)
+                    ? TurnedToStart(arm, request.X_WH, tracked.q, *request.q_start)
+                    : tracked,
+                path)) {
+    return path;
+  }
+  if (!request.q_start) return path;
+  const int first = static_cast<int>(request.X_WH.size() - tracked.q.size());
+  for (int join = JoinStride(request); join <= LastJoin(request); join += JoinStride(request)) {
+    if (join <= first) continue;
+    if (auto joined = Join(arm, request, tracked.q, first, join)) return *joined;
+  }
+  return path;
+}
+
 }  // namespace
 
 ReachPath FollowReach(const Arm& arm, const ReachPathRequest& request) {
   ThrowUnless(!request.X_WH.empty(), "a reach needs poses of the hand");
-  const int n = static_cast<int>(request.X_WH.size());
-  const std::vector<Pose> reversed(request.X_WH.rbegin(), request.X_WH.rend());
-  ArmPath tracked = TrackArmPath(arm, reversed, request.q_goal, kBigStep);
-  std::reverse(tracked.q.begin(), tracked.q.end());
-
+  const std::optional<ArmGeometry> geometry = GeometryOf(arm);
+  if (!geometry) return FollowNumerically(arm, request);
+  SwivelPathRequest swivel;
+  swivel.X_WH = request.X_WH;
+  swivel.dt = request.dt;
+  swivel.goal = request.q_goal;
+  swivel.max_speed = request.max_speed;
+  swivel.obstacles = request.obstacles;
+  if (BeginsAtStart(arm, request)) swivel.start = request.q_start;
   ReachPath path;
-  path.reason = tracked.reason;
-  if (tracked.complete) {
-    const bool begins_there =
-        request.q_start && SamePose(HandPose(arm, *request.q_start), request.X_WH.front());
-    const ArmPath whole =
-        begins_there ? TurnedToStart(arm, request.X_WH, tracked.q, *request.q_start) : tracked;
-    path.reason = whole.reason;
-    const double speed = LargestSpeed(whole.q, request.dt);
-    if (whole.complete && speed <= request.max_speed) {
-      path.q = whole.q;
-      path.X_WH = request.X_WH;
-      path.complete = true;
-      return path;
-    }
-    if (whole.complete) {
-      path.reason = fmt::format("the reach asks for {:.1f} rad/s of a joint, allowed are {:.1f}",
-                                speed, request.max_speed);
-    }
-  }
+  if (TakeWhole(request, PlanSwivelPath(*geometry, swivel), path)) return path;
   if (!request.q_start) return path;
 
-  const int first = n - static_cast<int>(tracked.q.size());
-  const int stride = std::max(1, request.latest_join / 12);
-  for (int join = stride; join <= std::min(request.latest_join, n - 2); join += stride) {
-    if (join <= first) continue;
-    if (auto joined = Join(arm, request, tracked.q, first, join)) return *joined;
+  swivel.start.reset();
+  swivel.origin = request.q_start;
+  for (int join = JoinStride(request); join <= LastJoin(request); join += JoinStride(request)) {
+    // From one sample earlier, for the velocity at the join.
+    const int first = join - 1;
+    swivel.X_WH.assign(request.X_WH.begin() + first, request.X_WH.end());
+    if (request.obstacles) {
+      swivel.obstacles = [&](const SevenJoints& q, int sample) {
+        return request.obstacles(q, sample + first);
+      };
+    }
+    const ArmPath tail = PlanSwivelPath(*geometry, swivel);
+    if (!tail.complete) continue;
+    if (auto joined = Join(arm, request, tail.q, first, join)) return *joined;
   }
   return path;
 }

@@ -9,6 +9,7 @@
 
 #include "base/pose.h"
 #include "kinematics/arm_ik.h"
+#include "kinematics/arm_swivel.h"
 
 namespace springgrasp {
 
@@ -23,6 +24,9 @@ struct ReachPathRequest {
   // Whether hand poses and joints up to a sample are free of obstacles; for ways of our own making.
   std::function<bool(const std::vector<Pose>& X_WH, const std::vector<Eigen::VectorXd>& q, int end)>
       clear;
+  // Cost per second of a posture near an obstacle, infinite in it; may be empty. What the elbow's
+  // way is bent around (swivel_path.h).
+  std::function<double(const SevenJoints& q, int sample)> obstacles;
 };
 
 struct ReachPath {
@@ -33,9 +37,10 @@ struct ReachPath {
   int join = 0;            // before it the arm comes straight from its start, in joint space
 };
 
-// Follows the hand's way backwards from its goal and turns it, within the arm's null space, so that
-// it begins at q_start. Where the arm cannot do that it comes from q_start on a quintic in joint
-// space that joins the way at the earliest sample possible, not after latest_join.
+// Follows the hand's way from q_start to near q_goal with the elbow's course of PlanSwivelPath.
+// Where the arm cannot do that it comes from q_start on a quintic in joint space that joins the way
+// at the earliest sample possible, not after latest_join. (Arms without closed form: backwards from
+// the goal, turned to q_start within the null space.)
 ReachPath FollowReach(const Arm& arm, const ReachPathRequest& request);
 
 }  // namespace springgrasp

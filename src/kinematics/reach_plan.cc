@@ -12,34 +12,27 @@
 namespace springgrasp {
 namespace {
 
-constexpr double kForearmRadius = 0.047;   // m (models/armar3b)
-constexpr double kWristRadius = 0.03;      // m
 constexpr double kEnoughMargin = 0.25;     // of half a joint's range; more is no better
 constexpr double kLeastClearance = 0.002;  // m, a goal nearer to the table is not taken
 constexpr double kBigStep = 0.15;          // rad between samples: a jump
+constexpr double kFar = 0.05;              // m, what is farther off is as good as far
+constexpr double kNearCost = 10;           // per second, of a posture that touches
 
-// Forearm and wrist above the table: from the joint four before the hand to the hand frame.
-double ForearmAboveTable(const Arm& arm, const Eigen::VectorXd& q, const ReachRequest& request) {
-  Eigen::VectorXd full = arm.q;
-  for (int i = 0; i < arm.num_joints(); ++i) full[arm.joints[i]] = q[i];
+// Arm and the rest of its robot, up to kFar.
+double SelfClearanceOf(const Arm& arm, const Eigen::VectorXd& q, const ReachRequest& request) {
+  if (request.body == nullptr) return kFar;
   std::vector<Pose> X_WB;
-  ForwardKinematics(arm.tree, full, X_WB);
-  const Eigen::Vector3d p_hand = FramePose(arm.tree, X_WB, arm.frame).translation();
-  // The elbow: the farthest of the last joints' bodies that is not yet the wrist.
-  Eigen::Vector3d p_elbow = p_hand;
-  for (int b = arm.tree.frames[arm.frame].node; b >= 0; b = arm.tree.nodes[b].parent) {
-    p_elbow = X_WB[b].translation();
-    if ((p_elbow - p_hand).norm() > 0.1) break;
-  }
-  double lowest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i <= 6; ++i) {
-    const double s = i / 6.0;
-    const Eigen::Vector3d p = p_elbow + s * (p_hand - p_elbow);
-    const double radius = kForearmRadius + s * (kWristRadius - kForearmRadius);
-    if (p.y() + radius < request.table_edge) continue;
-    lowest = std::min(lowest, p.z() - radius - request.table_height);
-  }
-  return lowest;
+  return SelfClearance(arm, *request.body, q, kFar, X_WB);
+}
+
+// Cost per second of an arm posture near the table or the robot itself.
+double ObstacleCost(const Arm& arm, const Eigen::VectorXd& q, const ReachRequest& request) {
+  const double clearance =
+      std::min(SelfClearanceOf(arm, q, request),
+               ForearmAboveTable(arm, q, request.table_height, request.table_edge));
+  if (clearance < kLeastClearance) return std::numeric_limits<double>::infinity();
+  const double near = std::max(0.0, 1 - clearance / kFar);
+  return kNearCost * near * near;
 }
 
 struct Goal {
@@ -70,7 +63,7 @@ std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRe
       SolveArmIkFromAnywhere(arm, goal.X_WH, ik, request.q_start);
   if (!q) return std::nullopt;
   goal.q = *q;
-  const double forearm = ForearmAboveTable(arm, *q, request);
+  const double forearm = ForearmAboveTable(arm, *q, request.table_height, request.table_edge);
   if (forearm < kLeastClearance) return std::nullopt;
   double margin = LimitMargin(arm, *q);
   Eigen::VectorXd lifted_q = *q;
@@ -131,12 +124,15 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
           request.q_hand[std::min<std::size_t>(k, request.q_hand.size() - 1)];
       if (HandAboveTable(hand, X_WH[k], q_hand, request.table_height, request.table_edge) <
               kLeastClearance ||
-          ForearmAboveTable(arm, q[k], request) < kLeastClearance) {
+          ForearmAboveTable(arm, q[k], request.table_height, request.table_edge) <
+              kLeastClearance ||
+          SelfClearanceOf(arm, q[k], request) < kLeastClearance) {
         return false;
       }
     }
     return request.clear(goal.motion.X_OF, X_WH);
   };
+  follow.obstacles = [&](const SevenJoints& q, int) { return ObstacleCost(arm, q, request); };
   ReachPath path = FollowReach(arm, follow);
   if (!path.complete) {
     plan.reason = path.reason;
@@ -185,12 +181,15 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
   plan.lift = lift.q;
   plan.limit_margin = 1;
   plan.table_clearance = std::numeric_limits<double>::infinity();
+  plan.self_clearance = kFar;
   for (std::size_t k = 0; k < plan.arm.size(); ++k) {
     plan.limit_margin = std::min(plan.limit_margin, LimitMargin(arm, plan.arm[k]));
     const Eigen::VectorXd& q_hand = request.q_hand[std::min(k, request.q_hand.size() - 1)];
     plan.table_clearance = std::min(
-        {plan.table_clearance, ForearmAboveTable(arm, plan.arm[k], request),
+        {plan.table_clearance,
+         ForearmAboveTable(arm, plan.arm[k], request.table_height, request.table_edge),
          HandAboveTable(hand, plan.X_WH[k], q_hand, request.table_height, request.table_edge)});
+    plan.self_clearance = std::min(plan.self_clearance, SelfClearanceOf(arm, plan.arm[k], request));
   }
   for (const Eigen::VectorXd& q : plan.lift) {
     plan.limit_margin = std::min(plan.limit_margin, LimitMargin(arm, q));

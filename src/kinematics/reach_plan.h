@@ -10,6 +10,7 @@
 
 #include "base/pose.h"
 #include "base/shape.h"
+#include "kinematics/arm_body.h"
 #include "kinematics/arm_ik.h"
 #include "kinematics/robot_hand.h"
 
@@ -29,6 +30,8 @@ struct ReachRequest {
   // Where the arm stands before (arm.joints' values). If the path begins at that hand pose, so does
   // the joint path; absent: the joint path begins in any posture.
   std::optional<Eigen::VectorXd> q_start;
+  // What the arm could hit of its own robot; null: not looked at.
+  const ArmBody* body = nullptr;
   // The hand's path for an object posed at X_WO * X_OF (F: the free motion of the grasp about the
   // object, identity: as demonstrated). Its last poses must be X_WO * X_OF * X_HO^-1.
   std::function<std::vector<Pose>(const Pose& X_OF)> path;
@@ -66,6 +69,7 @@ struct ReachPlan {
   std::array<std::vector<Eigen::VectorXd>, 3> shake;  // about the lifted pose, along W's axes
   double limit_margin = 0;        // smallest over the path, 0..1 (see LimitMargin)
   double table_clearance = 0;     // m, smallest of hand and forearm over the path
+  double self_clearance = 0;      // m, smallest of arm and rest of the robot, up to 0.05
   double via_raise = 0;           // m, added in the middle of the path
   int candidates = 0, goals = 0;  // tried, and reached at the goal
 };
@@ -95,5 +99,9 @@ double RaisePath(const RobotHand& hand, const std::vector<Eigen::VectorXd>& q_ha
 // Height of the lowest point of the hand above the table (only what is beyond its edge), m.
 double HandAboveTable(const RobotHand& hand, const Pose& X_WH, const Eigen::VectorXd& q_hand,
                       double table_height, double table_edge);
+
+// Height of the lowest point of forearm and wrist above the table, m; joint values of the arm.
+double ForearmAboveTable(const Arm& arm, const Eigen::VectorXd& q, double table_height,
+                         double table_edge);
 
 }  // namespace springgrasp

@@ -74,7 +74,8 @@ RobotHand MakeArmarHand(const KinematicTree& tree, const std::string& side) {
   hand.palm = 0;
   hand.tip_radius = 0.0093;
   hand.valves.resize(kNumValves);
-  for (int j = 0; j < layout.num_joints(); ++j) hand.valves[layout.valve_of_joint[j]].push_back(j);
+  hand.valve_of = layout.valve_of_joint;
+  for (int j = 0; j < layout.num_joints(); ++j) hand.valves[hand.valve_of[j]].push_back(j);
   hand.open = hand.tree.lower.cwiseMax(0.0);
 
   std::vector<Pose> X_HB;

@@ -34,6 +34,7 @@ struct RobotHand {
   int palm = -1;        // joint that moves the four fingers; -1: none
   int opposition = -1;  // joint that turns the thumb about the hand's long axis; -1: none
   std::vector<std::vector<int>> valves;  // joints driven by each valve (equal torque)
+  std::vector<int> valve_of;             // of each joint
   double tip_radius = 0;                 // m
   // Frame A of straight fingers: x along them, y along their common axes towards the thumb side,
   // z out of the back. Human H and robot A have the same meaning for directions.

@@ -73,6 +73,20 @@ TEST(HandMappingTest, AThumbThatTurnsFollowsTheHumanOpposition) {
   }
 }
 
+TEST(HandMappingTest, JointsOfOneValveBendAlike) {
+  RandomEngine engine = MakeStream(5, 0, "mapping");
+  for (const RobotHand* robot : {&TestRobotHand(), &TestOppositionHand()}) {
+    for (int trial = 0; trial < 20; ++trial) {
+      const MappingTarget target = TargetFromHuman(
+          TestHumanHand(), HumanPosture(TestHumanHand(), Uniform01(engine), &engine), *robot);
+      const Eigen::VectorXd q = MapHand(*robot, target).q;
+      for (const std::vector<int>& valve : robot->valves) {
+        for (const int joint : valve) EXPECT_DOUBLE_EQ(q[joint], q[valve.front()]);
+      }
+    }
+  }
+}
+
 TEST(HandMappingTest, TheSamePostureOfAnyHandLengthIsTheSameTarget) {
   const RobotHand& robot = TestRobotHand();
   const HumanHand& common = TestHumanHand();

@@ -39,7 +39,8 @@ Case MakeCase(const std::string& type, const std::string& shape, const Eigen::Ve
       const double open = 0.02 * (1 - s) + 0.025 * std::sin(std::numbers::pi * s);
       tips[f] = c.contact.p_OC[f] + open * c.contact.n_OC[f] + 0.25 * (1 - s) * from_O.normalized();
     }
-    m.p_OF.push_back(tips);
+    for (Eigen::Vector3d& tip : tips) tip = X_OH.inverse() * tip;
+    m.p_HF.push_back(tips);
     m.q_human.push_back(TestHumanHand().rest);
   }
   const Eigen::VectorXd q_open = OpenedPosture(TestRobotHand(), c.posture, m.shape, m.involved, 1);
@@ -101,7 +102,7 @@ TEST(ClearApproachTest, LeavesAClearPathAloneAndKeepsBothEnds) {
 
 TEST(HandMotionTest, RefusesSeriesOfDifferentLength) {
   Case c = MakeCase("pinch", "sphere:0.04", {0, -1, 0});
-  c.motion.p_OF.pop_back();
+  c.motion.p_HF.pop_back();
   EXPECT_THROW(MapHandMotion(TestHumanHand(), TestRobotHand(), c.motion, c.posture), Error);
 }
 
