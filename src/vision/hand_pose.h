@@ -19,10 +19,10 @@ namespace springgrasp {
 
 // Tuned on the four grasps of experiments/tracking, clean and moderate, seeds 31 to 33.
 struct HandPoseOptions {
-  double tip_sigma = 0.003;            // m, of a fully trusted fingertip
-  double ball_sigma_px = 5;            // of a ball outside the mask
-  double skin_sigma_px = 4;            // of the mask's outline off that of the balls
-  double sleeve_sigma_px = 4;          // of the end of the bare forearm off the mask's edge
+  double tip_sigma = 0.003;          // m, of a fully trusted fingertip
+  double ball_sigma_px = 5;          // of a ball outside the mask
+  double skin_sigma_px = 4;          // of the mask's outline off that of the balls
+  double sleeve_sigma_px = 4;        // of the end of the bare forearm off the mask's edge
   double mask_reach_px = 7;          // beyond, a mask residual says no more: objects hide the hand
   double wrist_depth_sigma = 0.004;  // m, beside that of the measurement
   double wrist_depth_reach = 0.03;   // m; beyond, a measured depth says no more

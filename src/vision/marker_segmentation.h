@@ -23,8 +23,8 @@ struct MarkerBlob {
 // `min_area` px, largest first.
 std::vector<MarkerBlob> SegmentMarkers(const cv::Mat& likelihood, double min_area,
                                        cv::Rect region = {});
-// The same into memory that is kept from frame to frame. With `cap_area` (px, of one cap) regions of
-// several caps that touch are parted into that many, at most five.
+// The same into memory that is kept from frame to frame. With `cap_area` (px, of one cap) regions
+// of several caps that touch are parted into that many, at most five.
 struct MarkerScratch {
   cv::Mat binary, labels;  // as large as the largest picture so far
   cv::Mat stats, centroids;
