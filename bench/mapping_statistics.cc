@@ -1,6 +1,7 @@
 // The human hand's inverse kinematics and the mapping to the robot's fingers (Eq. 14-16) along
 // generated grasps of all four types.
-//   mapping_statistics [TRAJECTORIES] [EVERY]   (1000, 10: NLopt is asked every tenth frame)
+//   mapping_statistics [TRAJECTORIES] [EVERY] [FIRST]   (1000, 10, 0: NLopt is asked every tenth
+//                                                        frame; FIRST: the number of the first one)
 //   mapping_statistics trace OUT.csv            joint angles through one grasp of each type
 #include <fmt/format.h>
 
@@ -189,12 +190,13 @@ int Main(int argc, char** argv) {
   }
   const int trajectories = argc > 1 ? std::atoi(argv[1]) : 1000;
   const int every = argc > 2 ? std::atoi(argv[2]) : 10;
+  const int first = argc > 3 ? std::atoi(argv[3]) : 0;
   const GraspBodies bodies = MakeGraspBodies();
   const std::vector<Grasp> library = ReadLibrary();
   std::map<std::string, Tally> tallies;
   std::map<std::string, HumanTally> human;
   std::map<std::string, std::map<double, LambdaTally>> lambdas;
-  for (int n = 0; n < trajectories; ++n) {
+  for (int n = first; n < first + trajectories; ++n) {
     const GraspCase c = MakeGraspCase(bodies, library, kSeed, static_cast<std::uint64_t>(n));
     Count(c, every, tallies[c.type]);
     CountLambdas(c, every, lambdas[c.type], lambdas["all"]);

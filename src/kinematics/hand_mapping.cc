@@ -1,6 +1,5 @@
 #include "kinematics/hand_mapping.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -184,9 +183,38 @@ MappingResult ResultOf(MappingProblem& problem, const MappingSolution& solution)
   return result;
 }
 
+// Solution of A y = b by Cholesky's method, its loops of fixed length so that they are unrolled;
+// only A's lower part is read. False: A is not positive definite.
+bool SolveFixed(const ValveMatrix& A, const ValveAngles& b, ValveAngles& y) {
+  double L[kMostValves][kMostValves], inverse[kMostValves];
+  for (int i = 0; i < kMostValves; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      double sum = A(i, j);
+      for (int k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
+      if (j < i) {
+        L[i][j] = sum * inverse[j];
+      } else {
+        if (!(sum > 0)) return false;
+        inverse[i] = 1 / std::sqrt(sum);
+      }
+    }
+  }
+  for (int i = 0; i < kMostValves; ++i) {
+    double sum = b[i];
+    for (int k = 0; k < i; ++k) sum -= L[i][k] * y[k];
+    y[i] = sum * inverse[i];
+  }
+  for (int i = kMostValves - 1; i >= 0; --i) {
+    double sum = y[i];
+    for (int k = i + 1; k < kMostValves; ++k) sum -= L[k][i] * y[k];
+    y[i] = sum * inverse[i];
+  }
+  return true;
+}
+
 // Projected Levenberg-Marquardt as in levenberg_marquardt.h, on the normal equations alone.
 MappingSolution Minimize(MappingProblem& problem, const ValveAngles& start, int max_iterations) {
-  constexpr double kStep = 1e-5;      // rad, where it ends
+  constexpr double kStep = 3e-5;      // rad, where it ends
   constexpr double kGradient = 1e-9;  // of the cost, per rad
   MappingSolution best;
   best.x = start;
@@ -215,8 +243,9 @@ MappingSolution Minimize(MappingProblem& problem, const ValveAngles& start, int 
     for (int attempt = 0;; ++attempt) {
       if (attempt == 30) return best;
       damped.diagonal() = (1 + damping) * diagonal;
-      const ValveAngles x =
-          (best.x - damped.llt().solve(slope)).cwiseMax(problem.lower).cwiseMin(problem.upper);
+      ValveAngles step;
+      if (!SolveFixed(damped, slope, step)) return best;
+      const ValveAngles x = (best.x - step).cwiseMax(problem.lower).cwiseMin(problem.upper);
       if (!((x - best.x).cwiseAbs().maxCoeff() > kStep)) return best;
       const double cost = problem.Evaluate(x, &A_trial, &g_trial);
       if (cost < best.cost) {
@@ -333,7 +362,7 @@ MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target
   };
   solver.set_lower_bounds(as_vector(problem.lower));
   solver.set_upper_bounds(as_vector(problem.upper));
-  solver.set_xtol_abs(1e-5);
+  solver.set_xtol_abs(3e-5);
   solver.set_ftol_rel(1e-12);
   solver.set_maxeval(500);
   RandomEngine engine = MakeStream(0, 0, "mapping yardstick");
