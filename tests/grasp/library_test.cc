@@ -38,26 +38,25 @@ TEST(ShippedLibrary, IsWhatItsDemonstrationsTeach) {
   }
 }
 
-// Wanted are 3 mm of the involved fingers, missed where a tripod's thumb moves on an arc (4.4 mm)
-// and barely by two others, and 8 mm of the rest.
+// Wanted are 3 mm of the involved fingers, missed by the pinch's thumb (3.2 mm), and 8 mm of the
+// rest.
 TEST(ShippedLibrary, ReproducesItsTrackedDemonstrations) {
   int within = 0, involved = 0;
   for (const LibraryEntry& entry : ReadLibrary(ShippedLibrary())) {
     SCOPED_TRACE(entry.grasp.name);
     const GraspQuality& quality = entry.grasp.quality;
     for (int i = 0; i < kNumFingers; ++i) {
-      EXPECT_LT(quality.rmse[i], entry.grasp.involved[i] ? 0.0045 : 0.008) << kFingerNames[i];
+      EXPECT_LT(quality.rmse[i], entry.grasp.involved[i] ? 0.0035 : 0.008) << kFingerNames[i];
       if (!entry.grasp.involved[i]) continue;
       ++involved;
       within += quality.rmse[i] <= 0.003;
     }
     EXPECT_LT(quality.reach_rmse, 0.002);
     EXPECT_LT(std::abs(quality.aperture_reproduced / quality.aperture - 1), 0.10);
-    // Wanted is 0.08; the lateral's peak is flat and comes one sample of the 10 ms track later.
-    EXPECT_LT(std::abs(quality.aperture_time_reproduced - quality.aperture_time), 0.084);
+    EXPECT_LT(std::abs(quality.aperture_time_reproduced - quality.aperture_time), 0.08);
   }
   EXPECT_EQ(involved, 12);
-  EXPECT_GE(within, 9);
+  EXPECT_GE(within, 11);
 }
 
 // Hands open widest at 60 to 75 % of a reach, and hold what they have closed on.

@@ -214,8 +214,9 @@ TEST(SpringSystem, BentWaysBackFollowTheirArc) {
   for (int draw = 0; draw < 20; ++draw) {
     SpringSystem system = RandomSystem(engine, 3, "brace9");
     system.ratio = ForceRatio::kBalanced;
-    const Eigen::Vector3d n = RandomPoints(engine, 3, 1, 1).col(0).normalized();
-    const Eigen::Vector3d bend = 5 * n.cross(RandomPoints(engine, 3, 1, 1).col(0)).normalized();
+    const Eigen::Vector3d n = RandomPoints(engine, 3, 1, 1).normalized();
+    const Eigen::Vector3d other = RandomPoints(engine, 3, 1, 1);
+    const Eigen::Vector3d bend = 5 * n.cross(other).normalized();
     system.bend.col(0) = bend;
     for (const double x : {0.01, 0.04}) {
       MatrixXd p = system.anchors;
