@@ -15,8 +15,7 @@ using Eigen::VectorXd;
 // Rows are contiguous: elimination works on whole rows.
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Solves A X = B by elimination with row exchanges; B becomes X, A is used up. For the few dozen
-// rows here twice as fast as a factorisation in blocks.
+// Solves A X = B by elimination with row exchanges; B becomes X, A is used up. Allocates nothing.
 void SolveInPlace(RowMatrix& A, RowMatrix& B) {
   const Index n = A.rows();
   for (Index k = 0; k < n; ++k) {
