@@ -3,11 +3,9 @@
 //   aperture_statistics GRASP.yaml...
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <exception>
-
+#include "grasp/aperture.h"
 #include "grasp/generate.h"
-#include "grasp/learn_fit.h"
+#include "statistics_main.h"
 
 namespace springgrasp {
 namespace {
@@ -18,26 +16,12 @@ void PrintRow(const Grasp& grasp, double width, double duration) {
                                         : ParseShape(fmt::format("sphere:{}", width));
   options.duration = duration;
   const FingertipMotion motion = GenerateMotion(grasp, options);
-  double widest = 0, at = 0, late = 0, after = 0;
-  for (const FingertipMotionSample& sample : motion.samples) {
-    const double aperture = Aperture(sample.p_HF, motion.involved);
-    if (aperture > widest) {
-      widest = aperture;
-      at = sample.t / motion.T;
-    }
-    if (sample.t < motion.T - 1e-9) continue;
-    double error = 0;
-    for (int i = 0; i < kNumFingers; ++i) {
-      if (!motion.involved[i]) continue;
-      error = std::max(error, (sample.p_HF[i] - motion.X_HO * motion.p_OC[i]).norm());
-    }
-    if (late == 0) late = error;
-    after = std::max(after, error);
-  }
-  const double start = Aperture(motion.samples.front().p_HF, motion.involved);
+  const WidestAperture aperture = FindWidestAperture(motion);
+  const double late = ContactError(motion, motion.T, motion.T + options.dt);
+  const double after = ContactError(motion, motion.T, 1.5 * motion.T);
   fmt::print("{:<7} {:<8} {:>5.0f} {:>5.1f} {:>8.1f} {:>8.1f} {:>6.2f} {:>7.2f} {:>7.2f}\n",
-             grasp.type, grasp.profile, 1e3 * width, duration, 1e3 * start, 1e3 * widest, at,
-             1e3 * late, 1e3 * after);
+             grasp.type, grasp.profile, 1e3 * width, duration, 1e3 * aperture.start,
+             1e3 * aperture.widest, aperture.at, 1e3 * late, 1e3 * after);
 }
 
 int Main(int argc, char** argv) {
@@ -57,11 +41,4 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace springgrasp
 
-int main(int argc, char** argv) {
-  try {
-    return springgrasp::Main(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return StatisticsMain(argc, argv, springgrasp::Main); }

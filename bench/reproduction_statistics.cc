@@ -3,12 +3,12 @@
 //   reproduction_statistics TYPE=DEMO.csv...
 #include <fmt/format.h>
 
-#include <exception>
 #include <filesystem>
 #include <string>
 
 #include "demonstration/demonstration.h"
 #include "grasp/learn.h"
+#include "statistics_main.h"
 
 namespace springgrasp {
 namespace {
@@ -58,11 +58,4 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace springgrasp
 
-int main(int argc, char** argv) {
-  try {
-    return springgrasp::Main(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return StatisticsMain(argc, argv, springgrasp::Main); }

@@ -39,7 +39,7 @@ class Equations {
     Load(x);
     const double t = x[2 * n_], f = force_.f(t);
     EvaluateSprings(system_, p_, v_, f, terms_);
-    SpringJacobian(system_, p_, v_, f, terms_, Jp_, Jv_);
+    SpringJacobian(system_, p_, v_, terms_, Jp_, Jv_);
     before_ = terms_.acc;
     constexpr double kStep = 1e-6;
     EvaluateSprings(system_, p_, v_, force_.f(t + kStep), terms_);

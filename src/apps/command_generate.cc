@@ -2,12 +2,15 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <string_view>
 
 #include "apps/command.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "grasp/blend.h"
 #include "grasp/generate.h"
+#include "grasp/mesh_contacts.h"
+#include "sim/object_mesh.h"
 
 namespace springgrasp {
 namespace {
@@ -24,7 +27,15 @@ int Generate(const Options& options) {
   CheckOutputPath(options.output);
   Grasp grasp = ReadGrasp(options.grasp);
   GenerateOptions generate;
-  generate.shape = ParseShape(options.shape);
+  constexpr std::string_view kMesh = "mesh:";
+  if (options.shape.starts_with(kMesh)) {
+    ThrowUnless(options.blend.empty(), "--blend: grasps are blended on a primitive, not on a mesh");
+    generate.mesh = std::make_shared<const TriangleMesh>(
+        CentredMesh(ReadObjectMesh(options.shape.substr(kMesh.size()))));
+    generate.shape = BoxAround(*generate.mesh);
+  } else {
+    generate.shape = ParseShape(options.shape);
+  }
   generate.X_WO = ParsePose(options.object, "--object");
   generate.yaw = options.yaw;
   generate.object_centre = options.centre;
@@ -53,7 +64,10 @@ void AddGenerateCommand(CLI::App& app, int& exit_code) {
   command->add_option("grasp", options->grasp, "grasp YAML of `learn`")->required();
   command->add_option("--object", options->object, "pose of the object \"x y z qw qx qy qz\", m")
       ->required();
-  command->add_option("--shape", options->shape, "sphere:D, cylinder:DxH or box:XxYxZ, metres")
+  command
+      ->add_option("--shape", options->shape,
+                   "sphere:D, cylinder:DxH, box:XxYxZ, metres, or mesh:FILE (OBJ, STL; its box's "
+                   "middle is the object's origin)")
       ->required();
   command->add_option("-o,--output", options->output, "motion CSV")->required();
   command->add_option("--duration", options->duration, "of the reach, s (default: as demonstrated)")

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "grasp/generate_fingers.h"
 #include "grasp/learn_reach.h"
+#include "grasp/mesh_contacts.h"
 #include "grasp/transfer.h"
 
 namespace springgrasp {
@@ -25,6 +26,10 @@ void TurnForcing(const PoseDmp& learned, PoseDmp& reach) {
       (learned.motion.weights.leftCols<3>() * turn.transpose()).eval();
 }
 
+double SectionRadius(const Shape& shape, const TriangleMesh* mesh, const Vector3d& along) {
+  return mesh ? MeanSectionRadius(*mesh, along) : MeanSectionRadius(shape, along);
+}
+
 }  // namespace
 
 Vector3d MiddleOfContacts(const PerFinger<Contact>& contacts, const PerFinger<bool>& involved) {
@@ -38,11 +43,14 @@ Vector3d MiddleOfContacts(const PerFinger<Contact>& contacts, const PerFinger<bo
   return 0.5 * (contacts[kThumb].p_OC + others / std::max(1, count));
 }
 
-PerFinger<Contact> ContactsOn(const Grasp& grasp, const Shape& shape, double tip_radius) {
+PerFinger<Contact> ContactsOn(const Grasp& grasp, const Shape& shape, double tip_radius,
+                              const TriangleMesh* mesh) {
   PerFinger<Contact> contacts;
   for (int i = 0; i < kNumFingers; ++i) {
     if (!grasp.involved[i]) continue;
-    if (const auto hit = ContactOfRay(shape, grasp.rays[i], tip_radius + grasp.clearance[i])) {
+    const double off = tip_radius + grasp.clearance[i];
+    if (const auto hit = mesh ? ContactOfRay(*mesh, grasp.rays[i], off)
+                              : ContactOfRay(shape, grasp.rays[i], off)) {
       contacts[i] = *hit;
       continue;
     }
@@ -52,7 +60,7 @@ PerFinger<Contact> ContactsOn(const Grasp& grasp, const Shape& shape, double tip
     const Vector3d n = grasp.rays[i].direction.normalized();
     contacts[i].n_O = n;
     contacts[i].p_OC = Vector3d(0, 0, grasp.rays[i].height * shape.size.z()) +
-                       (MeanSectionRadius(shape, along) + tip_radius) * n;
+                       (SectionRadius(shape, mesh, along) + tip_radius) * n;
   }
   return contacts;
 }
@@ -78,7 +86,8 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
   const Pose X_WO = options.X_WO * MakePose(Vector3d::Zero(), turn);
 
   // Contacts on the new surface; G keeps its place among them.
-  const PerFinger<Contact> contacts = ContactsOn(grasp, options.shape, options.tip_radius);
+  const PerFinger<Contact> contacts =
+      ContactsOn(grasp, options.shape, options.tip_radius, options.mesh.get());
   const PerFinger<Contact> learned = ContactsOn(grasp, grasp.shape, grasp.tip_radius);
   Vector3d shift = Vector3d::Zero();
   if (!options.object_centre) {
@@ -112,6 +121,7 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
     run.p_HC[i] = grasp.offset[i];
     run.n_H[i].setZero();
     run.opening[i] = grasp.opening[i];
+    run.lag[i] = grasp.lag[i] * T;
     run.p_HF[i] = grasp.offset[i];
     run.v_HF[i] = grasp.velocity[i] * (grasp.scales.T / T);
     motion.p_OC[i].setZero();
@@ -120,9 +130,11 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
     run.p_HC[i] = X_HO * contacts[i].p_OC;
     run.n_H[i] = X_HO.linear() * contacts[i].n_O;
     run.p_HF[i] = run.p_HC[i] + grasp.offset[i];
+    run.bend[i] = grasp.bend[i];
     if (options.object_centre) {
       run.p_HF[i] = X_HO * learned[i].p_OC + grasp.offset[i];
       run.p_HC[i] = X_HO.translation();
+      run.bend[i].setZero();  // of a way to a contact
     }
     motion.p_OC[i] = turn * contacts[i].p_OC;
     motion.n_OC[i] = turn * contacts[i].n_O;
@@ -132,7 +144,7 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
   if (involved > 0 && grasp.dim == 2) run.X_HP.translation() = moved / involved;
   if (options.object_centre) {
     const Vector3d along = X_OG_goal.translation() - X_OG_start.translation();
-    run.mean_radius = MeanSectionRadius(options.shape, along) + options.tip_radius;
+    run.mean_radius = SectionRadius(options.shape, options.mesh.get(), along) + options.tip_radius;
   }
   for (const GraspEdge& edge : grasp.edges) {
     run.edges.emplace_back(edge.i, edge.j);

@@ -2,17 +2,21 @@
 // DMP rollout, central force (Eq. (7)), springs (Eq. (5)), contacts on the new surface.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "base/pose.h"
 #include "base/shape.h"
+#include "base/triangle_mesh.h"
 #include "grasp/fingertip_motion.h"
 #include "grasp/grasp.h"
 
 namespace springgrasp {
 
 struct GenerateOptions {
-  Shape shape;                   // the new object
+  Shape shape;  // the new object
+  // Its surface where it is a mesh (mesh_contacts.h), `shape` being the box around it; else null.
+  std::shared_ptr<const TriangleMesh> mesh;
   Pose X_WO = Pose::Identity();  // its believed pose
   double tip_radius = 0.008;     // m, of the hand that will grasp
   // Eq. (6) alone: no contact points; the involved fingers are drawn to the mean radius of the
@@ -37,7 +41,8 @@ FingertipMotion GenerateMotion(const Grasp& grasp, const GenerateOptions& option
 
 // Contacts of the involved fingers on a shape: the learned rays, or where one meets no surface a
 // point at the mean section radius (Eq. (6)).
-PerFinger<Contact> ContactsOn(const Grasp& grasp, const Shape& shape, double tip_radius);
+PerFinger<Contact> ContactsOn(const Grasp& grasp, const Shape& shape, double tip_radius,
+                              const TriangleMesh* mesh = nullptr);
 
 // Midway between the thumb's contact and the mean of the others, in O, m.
 Eigen::Vector3d MiddleOfContacts(const PerFinger<Contact>& contacts,

@@ -15,7 +15,10 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kBlend = 0.05;  // of T; spring-model note, section 6
+// Of T, over which the central force changes its sign. Profile paper: spring-model note, section 6.
+// Profile human: the hand comes to rest at its widest, as people's do; chosen on tracked
+// demonstrations of the four types, seeds 1 and 2.
+constexpr double kBlend = 0.05, kCalmBlend = 0.4;
 
 }  // namespace
 
@@ -67,6 +70,7 @@ SpringSystem MakeSystem(const FingerRun& run, const std::vector<int>& fingers) {
   }
   system.anchors = SystemPoints(run, fingers, run.p_HC);
   system.normals = OpeningDirections(run, fingers);
+  system.bend = SystemPoints(run, fingers, run.bend, true);
   for (int n = 0; n < count; ++n) {
     const int finger = fingers[static_cast<std::size_t>(n)];
     system.involved[static_cast<std::size_t>(n)] = run.involved[finger];
@@ -84,8 +88,8 @@ SpringSystem MakeSystem(const FingerRun& run, const std::vector<int>& fingers) {
   return system;
 }
 
-CentralForce MakeRunForce(const FingerRun& run, const std::vector<double>& acceleration,
-                          double dt) {
+CentralForce MakeRunForce(const FingerRun& run, const std::vector<int>& fingers,
+                          const std::vector<double>& acceleration, double dt) {
   CentralForce force;
   // The reach's acceleration after T is the primitive settling; the holding force takes over.
   const auto last = static_cast<Eigen::Index>(std::floor(run.T / dt + 1e-9));
@@ -96,9 +100,15 @@ CentralForce MakeRunForce(const FingerRun& run, const std::vector<double>& accel
   force.T = run.T;
   force.t_switch = run.t_switch;
   force.gamma = run.gains.gamma;
-  force.blend = kBlend * run.T;
+  force.blend = (run.hold ? kCalmBlend : kBlend) * run.T;
   force.delay = run.gains.delay;
   force.beta = run.gains.closing;
+  if (std::any_of(run.lag.begin(), run.lag.end(), [](double lag) { return lag != 0; })) {
+    force.lag.resize(static_cast<Eigen::Index>(fingers.size()));
+    for (std::size_t n = 0; n < fingers.size(); ++n) {
+      force.lag[static_cast<Eigen::Index>(n)] = run.lag[fingers[n]];
+    }
+  }
   if (!run.hold) return force;
   force.hold = HoldingForce(run);
   force.ramp = true;
@@ -134,7 +144,7 @@ std::optional<FingerMotion> SimulateHeld(const FingerRun& run,
                                          double hold) {
   const std::vector<int> fingers = {0, 1, 2, 3, 4};
   const SpringSystem system = MakeSystem(run, fingers);
-  CentralForce force = MakeRunForce(run, acceleration, dt);
+  CentralForce force = MakeRunForce(run, fingers, acceleration, dt);
   force.hold = hold;
   const ForceProfile profile = MakeForceProfile(force);
 

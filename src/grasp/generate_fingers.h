@@ -35,6 +35,10 @@ struct FingerRun {
   // Preshape of the involved fingers from their contacts in H, m; all zero: along n_H.
   Fingertips opening = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
                         Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  // Of the ways back to the contacts, in H, 1/m (spring_system.h).
+  Fingertips bend = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                     Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  PerFinger<double> lag = {};      // s, by which a finger closes later than t_switch
   std::string ratio = "balanced";  // paper | reciprocal | balanced
   double max_ratio = 16;
   bool hold =
@@ -49,9 +53,11 @@ SpringSystem MakeSystem(const FingerRun& run, const std::vector<int>& fingers);
 Eigen::MatrixXd SystemPoints(const FingerRun& run, const std::vector<int>& fingers,
                              const Fingertips& p_H, bool direction = false);
 
-// Eq. (7) with the run's gains from |a| of H's origin (m/s^2) at even steps. The sign is blended
-// over 0.05 T around the switch, since |a| is not zero there on curved reaches.
-CentralForce MakeRunForce(const FingerRun& run, const std::vector<double>& acceleration, double dt);
+// Eq. (7) on the listed fingers with the run's gains, from |a| of H's origin (m/s^2) at even steps.
+// The sign is blended around the switch, since |a| is not zero there on curved reaches: over 0.05
+// T, with `hold` over 0.4 T.
+CentralForce MakeRunForce(const FingerRun& run, const std::vector<int>& fingers,
+                          const std::vector<double>& acceleration, double dt);
 
 // Holding force that keeps every involved tip within about 1 mm of its contact against the pull of
 // the virtual springs, at least gains.holding, N.

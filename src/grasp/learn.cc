@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "grasp/aperture.h"
 #include "grasp/generate_fingers.h"
 #include "grasp/grasp_frame.h"
 #include "grasp/learn_complete.h"
@@ -326,6 +327,9 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   if (fit.human) {
     grasp.opening = Preshape(fit, widest);
     fit.run.opening = grasp.opening;
+    fit.run.bend = grasp.bend = ClosingBend(fit);
+    fit.run.lag = ClosingLag(fit);
+    for (int i = 0; i < kNumFingers; ++i) grasp.lag[i] = fit.run.lag[i] / fit.run.T;
   }
   const FitResult fitted = FitSprings(fit);
 

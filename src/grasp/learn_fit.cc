@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "grasp/aperture.h"
 #include "grasp/spring_estimation.h"
 #include "motion/smoothing.h"
 
@@ -37,7 +38,7 @@ SpringObservation MakeObservation(const FitProblem& problem, const std::vector<i
                                   const FingerRun& run) {
   SpringObservation out;
   out.system = MakeSystem(run, fingers);
-  out.force = MakeRunForce(run, problem.acceleration, problem.dt);
+  out.force = MakeRunForce(run, fingers, problem.acceleration, problem.dt);
   out.weight.resize(static_cast<Eigen::Index>(fingers.size()));
   for (std::size_t n = 0; n < fingers.size(); ++n) {
     out.weight[static_cast<Eigen::Index>(n)] = run.involved[fingers[n]] ? 1 : kBystander;
@@ -200,17 +201,6 @@ double Reproduce(const FitProblem& problem, const FingerRun& run, FitResult& res
 GainRule RuleOf(bool human) {
   if (human) return {};
   return {.omega_T = 8, .zeta = 1.9, .damping = 0.07, .ambient = 0};  // the note's literal set
-}
-
-double Aperture(const Fingertips& p_H, const PerFinger<bool>& involved) {
-  Vector3d mean = Vector3d::Zero();
-  int count = 0;
-  for (int i = kIndex; i < kNumFingers; ++i) {
-    if (!involved[i]) continue;
-    mean += p_H[i];
-    ++count;
-  }
-  return (mean / std::max(1, count) - p_H[kThumb]).norm();
 }
 
 FitResult FitSprings(const FitProblem& problem) {

@@ -49,9 +49,6 @@ struct FitResult {
   double aperture_rmse = 0;                // m
 };
 
-// Distance between the thumb and the mean of the other involved tips, m.
-double Aperture(const Fingertips& p_H, const PerFinger<bool>& involved);
-
 // k by Eq. (8) (SVD, NNLS), then together with gamma, delay, closing gain and switch time by
 // Levenberg-Marquardt on the simulated trajectory, from several starting gains; the values that
 // reproduce the fingers best are kept. Contact stiffness and all damping follow the rule.

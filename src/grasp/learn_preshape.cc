@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "grasp/aperture.h"
+
 namespace springgrasp {
 
 using Eigen::Vector3d;
@@ -84,6 +86,88 @@ Fingertips Preshape(const FitProblem& fit, std::size_t widest) {
     if (fit.run.involved[i]) opening[i] = fit.run.p_HF[i] - fit.run.p_HC[i];
   }
   return opening;
+}
+
+namespace {
+
+constexpr double kLeast = 0.01;    // m, of a way back that tells its shape and its time
+constexpr double kMostBend = 1.0;  // bend times way: a quarter circle has 0.7
+
+// The way of finger i back to its contact.
+struct Closing {
+  std::size_t from = 0, half = 0;  // step at which it is farthest, and from which on within half
+  double most = 0;                 // m, then
+  Vector3d n = Vector3d::Zero();   // from the contact to there
+};
+Closing ClosingOf(const FitProblem& fit, int i) {
+  Closing closing;
+  const auto from_contact = [&](std::size_t k) -> Vector3d {
+    return fit.p_HF[k][i] - fit.run.p_HC[i];
+  };
+  for (std::size_t k = 0; k < fit.p_HF.size(); ++k) {
+    if (from_contact(k).norm() < closing.most) continue;
+    closing.most = from_contact(k).norm();
+    closing.from = k;
+  }
+  if (closing.most > 0) closing.n = from_contact(closing.from) / closing.most;
+  closing.half = fit.p_HF.size() - 1;
+  const auto within_half = [&](std::size_t k) {
+    return closing.n.dot(from_contact(k)) < 0.5 * closing.most;
+  };
+  while (closing.half > closing.from && within_half(closing.half)) --closing.half;
+  return closing;
+}
+
+}  // namespace
+
+Fingertips ClosingBend(const FitProblem& fit) {
+  Fingertips bend;
+  bend.fill(Vector3d::Zero());
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (!fit.run.involved[i] || !fit.observed[i]) continue;
+    const Closing closing = ClosingOf(fit, i);
+    if (closing.most < kLeast) continue;
+    // Across n the way is w = C x - bend x^2 where it is x along n.
+    double xx = 0, xxx = 0, xxxx = 0;
+    Vector3d wx = Vector3d::Zero(), wxx = Vector3d::Zero();
+    for (std::size_t k = closing.from; k < fit.p_HF.size(); ++k) {
+      const Vector3d y = fit.p_HF[k][i] - fit.run.p_HC[i];
+      const double x = closing.n.dot(y);
+      const Vector3d w = y - x * closing.n;
+      xx += x * x;
+      xxx += x * x * x;
+      xxxx += x * x * x * x;
+      wx += x * w;
+      wxx += x * x * w;
+    }
+    const double determinant = xx * xxxx - xxx * xxx;
+    if (determinant <= 1e-9 * xx * xxxx) continue;
+    bend[i] = -(xx * wxx - xxx * wx) / determinant;
+    const double limit = kMostBend / closing.most;
+    if (bend[i].norm() > limit) bend[i] *= limit / bend[i].norm();
+  }
+  return bend;
+}
+
+PerFinger<double> ClosingLag(const FitProblem& fit) {
+  PerFinger<double> lag = {};
+  const std::size_t widest = WidestInstant(fit);
+  PerFinger<bool> known = {};
+  double mean = 0;
+  int count = 0;
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (!fit.run.involved[i] || !fit.observed[i]) continue;
+    const Closing closing = ClosingOf(fit, i);
+    known[i] = closing.most >= kLeast && closing.half >= widest;
+    if (!known[i]) continue;
+    lag[i] = static_cast<double>(closing.half) * fit.dt;
+    mean += lag[i];
+    ++count;
+  }
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (known[i]) lag[i] -= mean / count;
+  }
+  return lag;
 }
 
 }  // namespace springgrasp

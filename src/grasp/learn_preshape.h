@@ -1,4 +1,5 @@
-// The preshape of a grasp: where the hand opens to before it closes.
+// The preshape of a grasp: where the hand opens to before it closes, and how it comes back. All of
+// it is read from the demonstration, nothing is fitted.
 #pragma once
 
 #include <cstddef>
@@ -15,5 +16,15 @@ std::size_t WidestInstant(const FitProblem& fit);
 // `widest`: the first principal component of their ways, less what the auxiliary springs alone
 // leave of the start. From the contacts in H, m.
 Fingertips Preshape(const FitProblem& fit, std::size_t widest);
+
+// How the involved fingers' ways back to their contacts are bent (spring_system.h), 1/m: the
+// parabola through each one's path from where it is farthest on. Straight where that is less than
+// 10 mm away.
+Fingertips ClosingBend(const FitProblem& fit);
+
+// How much later than the mean of the involved fingers each closes, s: judged by when it has half
+// of its way back behind it. 0 for a finger that comes back less than 10 mm, or before the hand is
+// widest.
+PerFinger<double> ClosingLag(const FitProblem& fit);
 
 }  // namespace springgrasp

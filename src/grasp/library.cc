@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "grasp/aperture.h"
 #include "grasp/generate.h"
 #include "grasp/learn_segment.h"
 #include "grasp/learn_track.h"
@@ -87,14 +88,7 @@ std::vector<std::string> CheckGrasp(const Grasp& grasp) {
   options.tip_radius = grasp.tip_radius;
   try {
     const FingertipMotion motion = GenerateMotion(grasp, options);
-    double error = 0;
-    for (const FingertipMotionSample& sample : motion.samples) {
-      if (sample.t < motion.T - 1e-9) continue;
-      for (int i = 0; i < kNumFingers; ++i) {
-        if (!motion.involved[i]) continue;
-        error = std::max(error, (sample.p_HF[i] - motion.X_HO * motion.p_OC[i]).norm());
-      }
-    }
+    const double error = ContactError(motion, motion.T, 1.5 * motion.T);
     if (grasp.profile == "human" && error > kLanded) {
       wrong.push_back(fmt::format("an involved tip ends {:.1f} mm from its contact", 1e3 * error));
     }

@@ -118,6 +118,7 @@ void StackRows(const std::vector<SpringObservation>& observations, double trim, 
   X.resize(capacity, static_cast<Index>(first.springs.size()));
   b.resize(capacity);
   MatrixXd X_frame(n, X.cols());
+  VectorXd f(first.num_fingers());
   VectorXd b_frame(n);
   SpringTerms terms;
   for (const SpringObservation& o : observations) {
@@ -129,9 +130,10 @@ void StackRows(const std::vector<SpringObservation>& observations, double trim, 
       const auto finite = [](const RowVectorXd& row) {
         return row.unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; }).eval();
       };
+      EvaluateCentralForces(o.force, o.t[k], f);
       RegressionRows(o.system, PointsOf(finite(o.p_smooth.row(k)), dim),
-                     PointsOf(finite(o.v.row(k)), dim), PointsOf(finite(o.a.row(k)), dim),
-                     EvaluateCentralForce(o.force, o.t[k]), terms, X_frame, b_frame);
+                     PointsOf(finite(o.v.row(k)), dim), PointsOf(finite(o.a.row(k)), dim), f, terms,
+                     X_frame, b_frame);
       for (int i = 0; i < o.system.num_fingers(); ++i) {
         if (!usable[static_cast<std::size_t>(i)]) continue;
         X.middleRows(used, dim) = X_frame.middleRows(dim * i, dim);

@@ -66,6 +66,12 @@ void RegressionRows(const SpringSystem& system, const Eigen::Ref<const Eigen::Ma
                     const Eigen::Ref<const Eigen::MatrixXd>& v,
                     const Eigen::Ref<const Eigen::MatrixXd>& a, double f, SpringTerms& terms,
                     Eigen::Ref<Eigen::MatrixXd> X, Eigen::Ref<Eigen::VectorXd> b);
+// The same with a force for each finger.
+void RegressionRows(const SpringSystem& system, const Eigen::Ref<const Eigen::MatrixXd>& p,
+                    const Eigen::Ref<const Eigen::MatrixXd>& v,
+                    const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::VectorXd& f,
+                    SpringTerms& terms, Eigen::Ref<Eigen::MatrixXd> X,
+                    Eigen::Ref<Eigen::VectorXd> b);
 
 // Solves X k = b by SVD with scaled columns; an empty column (a spring at rest length throughout)
 // gives k = 0 and infinite standard error.

@@ -39,22 +39,24 @@ SpringStepper::SpringStepper(const SpringSystem& system, const SpringIntegration
     stages_.p[i].setZero(system.dim, system.num_fingers());
     stages_.v[i].setZero(system.dim, system.num_fingers());
     stages_.a[i].setZero(n);
+    stages_.f[i].setZero(system.num_fingers());
   }
   Jp_.setZero(n, n);
   Jv_.setZero(n, n);
   newton_.setIdentity(2 * n, 2 * n);
   residual_.setZero(2 * n);
   past_.setZero(n, 4);
+  force_.setZero(system.num_fingers());
   change_.setZero(2 * n);
   lu_ = Eigen::PartialPivLU<MatrixXd>(newton_);
   EvaluateSprings(system_, stages_.p[0], stages_.v[0], 0, terms_);
 }
 
 // The matrix of Newton's method, with the Jacobian at the step's start.
-void SpringStepper::Factor(double f, double h, const MatrixXd& p, const MatrixXd& v) {
+void SpringStepper::Factor(const VectorXd& f, double h, const MatrixXd& p, const MatrixXd& v) {
   const Index n = system_.num_coordinates();
   EvaluateSprings(system_, p, v, f, terms_);
-  SpringJacobian(system_, p, v, f, terms_, Jp_, Jv_);
+  SpringJacobian(system_, p, v, terms_, Jp_, Jv_);
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 2; ++j) {
       auto block = newton_.block(i * n, j * n, n, n);
@@ -116,7 +118,7 @@ bool SpringStepper::Solve(double h, const MatrixXd& p, const MatrixXd& v) {
 
 bool SpringStepper::TryStep(const ForceProfile& force, double t, double h, const MatrixXd& p,
                             const MatrixXd& v) {
-  for (int i = 0; i < 2; ++i) stages_.f[i] = force.f(t + kGaussC[i] * h);
+  for (int i = 0; i < 2; ++i) force.At(t + kGaussC[i] * h, stages_.f[i]);
   stages_.t = t;
   stages_.h = h;
   if (known_ > 0 && std::abs(end_ - t) > 1e-9 * h) known_ = 0;
@@ -125,7 +127,8 @@ bool SpringStepper::TryStep(const ForceProfile& force, double t, double h, const
     Predict(t, h);
     if (Solve(h, p, v)) return true;
   }
-  Factor(force.f(t + 0.5 * h), h, p, v);
+  force.At(t + 0.5 * h, force_);
+  Factor(force_, h, p, v);
   if (known_ > 0) {
     Predict(t, h);
   } else {

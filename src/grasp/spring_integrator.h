@@ -51,7 +51,7 @@ class SpringStepper {
   // Of the last accepted step: stage times, positions, velocities, forces, for sensitivities.
   struct Stages {
     double t = 0, h = 0;
-    double f[2] = {0, 0};
+    Eigen::VectorXd f[2];        // N
     Eigen::MatrixXd p[2], v[2];  // dim x N
     Eigen::VectorXd a[2];        // dim N
   };
@@ -64,7 +64,8 @@ class SpringStepper {
   bool TryStep(const ForceProfile& force, double t, double h, const Eigen::MatrixXd& p,
                const Eigen::MatrixXd& v);
   bool Solve(double h, const Eigen::MatrixXd& p, const Eigen::MatrixXd& v);
-  void Factor(double f, double h, const Eigen::MatrixXd& p, const Eigen::MatrixXd& v);
+  void Factor(const Eigen::VectorXd& f, double h, const Eigen::MatrixXd& p,
+              const Eigen::MatrixXd& v);
   void Predict(double t, double h);
   bool StepHalving(const ForceProfile& force, double t, double h, int depth, Eigen::MatrixXd& p,
                    Eigen::MatrixXd& v);
@@ -74,7 +75,7 @@ class SpringStepper {
   SpringTerms terms_;
   Stages stages_;
   Eigen::MatrixXd Jp_, Jv_, newton_;
-  Eigen::VectorXd residual_, change_;
+  Eigen::VectorXd residual_, change_, force_;
   // Accelerations at the stages of the last accepted steps without a gap between them.
   double past_t_[4] = {0, 0, 0, 0};
   Eigen::MatrixXd past_;  // dim N x 4

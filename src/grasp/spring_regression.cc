@@ -17,6 +17,14 @@ using Eigen::VectorXd;
 void RegressionRows(const SpringSystem& system, const Eigen::Ref<const MatrixXd>& p,
                     const Eigen::Ref<const MatrixXd>& v, const Eigen::Ref<const MatrixXd>& a,
                     double f, SpringTerms& terms, Eigen::Ref<MatrixXd> X, Eigen::Ref<VectorXd> b) {
+  terms.f.setConstant(system.num_fingers(), f);
+  RegressionRows(system, p, v, a, terms.f, terms, X, b);
+}
+
+void RegressionRows(const SpringSystem& system, const Eigen::Ref<const MatrixXd>& p,
+                    const Eigen::Ref<const MatrixXd>& v, const Eigen::Ref<const MatrixXd>& a,
+                    const VectorXd& f, SpringTerms& terms, Eigen::Ref<MatrixXd> X,
+                    Eigen::Ref<VectorXd> b) {
   EvaluateSprings(system, p, v, f, terms);
   const int dim = system.dim;
   X.setZero();
@@ -24,7 +32,7 @@ void RegressionRows(const SpringSystem& system, const Eigen::Ref<const MatrixXd>
     auto row = b.segment(dim * i, dim);
     row = -system.mass[i] * a.col(i) - system.d0 * v.col(i);
     if (!system.involved[static_cast<std::size_t>(i)]) continue;
-    const double f_i = i == 0 ? f : terms.R * f;
+    const double f_i = terms.ratio[i] * f[i];
     row -= system.share[i] *
            (system.kc * terms.xc.col(i) + system.dc * v.col(i) + f_i * terms.direction.col(i));
   }

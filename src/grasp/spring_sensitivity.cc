@@ -12,33 +12,68 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// df/dtheta of the gains that act through the force.
-double ForceDerivative(const CentralForce& force, SpringGain gain, double t) {
-  CentralForce lower = force, upper = force;
+// Rows are contiguous: elimination works on whole rows.
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// Solves A X = B by elimination with row exchanges; B becomes X, A is used up. Allocates nothing.
+void SolveInPlace(RowMatrix& A, RowMatrix& B) {
+  const Index n = A.rows();
+  for (Index k = 0; k < n; ++k) {
+    Index pivot = k;
+    for (Index i = k + 1; i < n; ++i) {
+      if (std::abs(A(i, k)) > std::abs(A(pivot, k))) pivot = i;
+    }
+    if (pivot != k) {
+      A.row(k).swap(A.row(pivot));
+      B.row(k).swap(B.row(pivot));
+    }
+    for (Index i = k + 1; i < n; ++i) {
+      const double part = A(i, k) / A(k, k);
+      if (part == 0) continue;
+      A.row(i).tail(n - k - 1) -= part * A.row(k).tail(n - k - 1);
+      B.row(i) -= part * B.row(k);
+    }
+  }
+  for (Index k = n - 1; k >= 0; --k) {
+    B.row(k) /= A(k, k);
+    for (Index i = 0; i < k; ++i) B.row(i) -= A(i, k) * B.row(k);
+  }
+}
+
+// The force a little below and above a gain that acts through it, for one finger's lag.
+struct Varied {
+  CentralForce lower, upper;
   double step = 1e-5;
+};
+Varied Vary(const CentralForce& force, SpringGain gain, double lag) {
+  Varied out{force, force};
+  for (CentralForce* side : {&out.lower, &out.upper}) {
+    side->lag.resize(0);
+    side->t_switch += lag;
+  }
   switch (gain) {
     case SpringGain::kGamma:
-      lower.gamma *= std::exp(-step);
-      upper.gamma *= std::exp(step);
+      out.lower.gamma *= std::exp(-out.step);
+      out.upper.gamma *= std::exp(out.step);
       break;
     case SpringGain::kBeta:
-      lower.beta *= std::exp(-step);
-      upper.beta *= std::exp(step);
+      out.lower.beta *= std::exp(-out.step);
+      out.upper.beta *= std::exp(out.step);
       break;
     case SpringGain::kDelay:
-      step *= force.T;
-      lower.delay -= step;
-      upper.delay += step;
+      out.step *= force.T;
+      out.lower.delay -= out.step;
+      out.upper.delay += out.step;
       break;
     case SpringGain::kSwitch:
-      step *= force.T;
-      lower.t_switch -= step;
-      upper.t_switch += step;
+      out.step *= force.T;
+      out.lower.t_switch -= out.step;
+      out.upper.t_switch += out.step;
       break;
     default:
-      return 0;
+      break;
   }
-  return (EvaluateCentralForce(upper, t) - EvaluateCentralForce(lower, t)) / (2 * step);
+  return out;
 }
 
 // Carries d(p, v)/dtheta along with the stepper.
@@ -56,9 +91,12 @@ class Sensitivities {
     }
     matrix_.setZero(2 * n_, 2 * n_);
     right_.setZero(2 * n_, q);
-    lu_ = Eigen::PartialPivLU<MatrixXd>(MatrixXd::Identity(2 * n_, 2 * n_));
     for (const SpringGain gain : parameters.gains) {
-      tables_.push_back(gain <= SpringGain::kSwitch ? Table(force, gain) : VectorXd());
+      MatrixXd tables(kTable, std::max<Index>(1, force.lag.size()));
+      for (Index i = 0; i < tables.cols() && gain <= SpringGain::kSwitch; ++i) {
+        tables.col(i) = Table(force, gain, force.lag.size() > 0 ? force.lag[i] : 0);
+      }
+      tables_.push_back(std::move(tables));
     }
     dt_ = (last_ - first_) / static_cast<double>(kTable - 1);
   }
@@ -67,7 +105,7 @@ class Sensitivities {
     const double h = stages.h;
     for (int i = 0; i < 2; ++i) {
       EvaluateSprings(system_, stages.p[i], stages.v[i], stages.f[i], terms_);
-      SpringJacobian(system_, stages.p[i], stages.v[i], stages.f[i], terms_, Jp_, Jv_);
+      SpringJacobian(system_, stages.p[i], stages.v[i], terms_, Jp_, Jv_);
       for (int j = 0; j < 2; ++j) {
         const double aa = kGaussA[i][0] * kGaussA[0][j] + kGaussA[i][1] * kGaussA[1][j];
         auto block = matrix_.block(i * n_, j * n_, n_, n_);
@@ -80,32 +118,35 @@ class Sensitivities {
       rows.noalias() += Jv_ * V;
       AddExplicit(stages, i, rows);
     }
-    lu_.compute(matrix_);
-    const MatrixXd dA = lu_.solve(right_);
+    SolveInPlace(matrix_, right_);
     const double b0 = 0.5 * (kGaussA[0][0] + kGaussA[1][0]);
     const double b1 = 0.5 * (kGaussA[0][1] + kGaussA[1][1]);
-    P += h * V + (h * h) * (b0 * dA.topRows(n_) + b1 * dA.bottomRows(n_));
-    V += (0.5 * h) * (dA.topRows(n_) + dA.bottomRows(n_));
+    P += h * V + (h * h) * (b0 * right_.topRows(n_) + b1 * right_.bottomRows(n_));
+    V += (0.5 * h) * (right_.topRows(n_) + right_.bottomRows(n_));
   }
 
-  MatrixXd P, V;  // n x parameters
+  RowMatrix P, V;  // n x parameters
 
  private:
   static constexpr Index kTable = 2001;
 
   // The force's derivative is tabulated once: it is asked for at every stage.
-  VectorXd Table(const CentralForce& force, SpringGain gain) {
+  VectorXd Table(const CentralForce& force, SpringGain gain, double lag) {
     first_ = std::min(force.t[0], 0.0);
     last_ = std::max(force.t[force.t.size() - 1], force.T) + force.delay + 0.1 * force.T;
+    const Varied varied = Vary(force, gain, lag);
     VectorXd values(kTable);
     for (Index i = 0; i < kTable; ++i) {
       const double t = first_ + (last_ - first_) * static_cast<double>(i) / (kTable - 1);
-      values[i] = ForceDerivative(force, gain, t);
+      const double change =
+          EvaluateCentralForce(varied.upper, t) - EvaluateCentralForce(varied.lower, t);
+      values[i] = change / (2 * varied.step);
     }
     return values;
   }
 
-  double At(const VectorXd& table, double t) const {
+  double At(const MatrixXd& tables, int finger, double t) const {
+    const auto table = tables.col(std::min<Index>(finger, tables.cols() - 1));
     const double x = (t - first_) / dt_;
     if (x <= 0 || x >= kTable - 1) return 0;
     const auto i = static_cast<Index>(x);
@@ -135,8 +176,6 @@ class Sensitivities {
         }
         continue;
       }
-      const double df =
-          gain <= SpringGain::kSwitch ? At(tables_[g], stages.t + kGaussC[stage] * stages.h) : 0;
       for (int i = 0; i < system_.num_fingers(); ++i) {
         if (!system_.involved[static_cast<std::size_t>(i)]) continue;
         auto rows_i = column.segment(dim * i, dim);
@@ -146,8 +185,8 @@ class Sensitivities {
         } else if (gain == SpringGain::kContactDamping) {
           rows_i -= (share * system_.dc / system_.mass[i]) * stages.v[stage].col(i);
         } else {
-          rows_i -=
-              (share * (i == 0 ? 1 : terms_.R) * df / system_.mass[i]) * terms_.direction.col(i);
+          const double df = At(tables_[g], i, stages.t + kGaussC[stage] * stages.h);
+          rows_i -= (share * terms_.ratio[i] * df / system_.mass[i]) * terms_.direction.col(i);
         }
       }
     }
@@ -156,11 +195,11 @@ class Sensitivities {
   const SpringSystem& system_;
   const SpringParameters& parameters_;
   Index n_;
-  std::vector<VectorXd> tables_;
+  std::vector<MatrixXd> tables_;  // per gain: a column for all fingers, or for each
   double first_ = 0, last_ = 1, dt_ = 1;
   SpringTerms terms_;
-  MatrixXd Jp_, Jv_, matrix_, right_, stage_;
-  Eigen::PartialPivLU<MatrixXd> lu_;
+  MatrixXd Jp_, Jv_;
+  RowMatrix matrix_, right_, stage_;
 };
 
 }  // namespace

@@ -32,13 +32,16 @@ bool Reciprocal(const SpringSystem& system, double f) {
 
 bool Balanced(const SpringSystem& system) { return system.ratio == ForceRatio::kBalanced; }
 
+// Where f is shared by the fingers' distances.
+bool Shared(const SpringSystem& system, double f) { return Balanced(system) && f > 0; }
+
 // R of Eq. (4) before its cap, and its derivative by rho.
 double RatioOf(const SpringSystem& system, double rho, double f) {
-  if (Balanced(system)) return f < 0 ? 1 : rho;
+  if (Balanced(system)) return 1;
   return Reciprocal(system, f) ? 1 / (rho * rho) : rho * rho;
 }
 double RatioSlope(const SpringSystem& system, double rho, double f) {
-  if (Balanced(system)) return f < 0 ? 0 : 1;
+  if (Balanced(system)) return 0;
   return Reciprocal(system, f) ? -2 / (rho * rho * rho) : 2 * rho;
 }
 
@@ -55,9 +58,42 @@ double DistanceRatio(const SpringSystem& system, const Eigen::VectorXd& s, doubl
   return count == 0 ? 0 : sum / (count * s[0]);
 }
 
+// Mean of s over all involved fingers, by their shares.
+struct MeanDistance {
+  double value = 0, count = 0;
+};
+MeanDistance MeanOf(const SpringSystem& system, const Eigen::VectorXd& s) {
+  MeanDistance mean;
+  for (int i = 0; i < system.num_fingers(); ++i) {
+    if (!system.involved[static_cast<std::size_t>(i)]) continue;
+    mean.value += system.share[i] * s[i];
+    mean.count += system.share[i];
+  }
+  if (mean.count > 0) mean.value /= mean.count;
+  return mean;
+}
+
+// Whether the way of finger i back to its contact is bent, xc as f > 0 sees it then, and the
+// derivative of that by xc.
+bool Bent(const SpringSystem& system, int i, double f) {
+  return Shared(system, f) && !system.bend.col(i).isZero(0);
+}
 template <int Dim>
-void Evaluate(const SpringSystem& system, const Points& p, const Points& v, double f,
-              SpringTerms& terms) {
+Vec<Dim> BentDistance(const SpringSystem& system, const SpringTerms& terms, int i) {
+  const Vec<Dim> xc = terms.xc.col(i);
+  return xc - xc.squaredNorm() * system.bend.col(i);
+}
+template <int Dim>
+Mat<Dim> BentDerivative(const SpringSystem& system, const SpringTerms& terms, int i, double f) {
+  const Mat<Dim> I = Mat<Dim>::Identity();
+  if (!Bent(system, i, f)) return I;
+  const Vec<Dim> xc = terms.xc.col(i);
+  const Vec<Dim> bend = system.bend.col(i);
+  return I - 2 * bend * xc.transpose();
+}
+
+template <int Dim>
+void Evaluate(const SpringSystem& system, const Points& p, const Points& v, SpringTerms& terms) {
   const int N = system.num_fingers();
   const double eps_c2 = system.eps_c * system.eps_c;
   const double eps_s2 = system.eps_s * system.eps_s;
@@ -91,7 +127,16 @@ void Evaluate(const SpringSystem& system, const Points& p, const Points& v, doub
     terms.s[i] = s;
     terms.u.col(i) = xc / s;
     terms.direction.col(i) = terms.u.col(i);
-    if (!Outward(system, f)) continue;
+    terms.ratio[i] = 1;
+    if (Bent(system, i, terms.f[i])) {
+      const Vec<Dim> bent = BentDistance<Dim>(system, terms, i);
+      // With this length for the direction, ratio and direction together are xc bent / mean s.
+      terms.ratio[i] = std::sqrt(bent.squaredNorm() + eps_c2);
+      terms.direction.col(i) = bent / terms.ratio[i];
+    } else if (Shared(system, terms.f[i])) {
+      terms.ratio[i] = s;
+    }
+    if (!Outward(system, terms.f[i])) continue;
     if (system.rest_radius[i] > 0) {
       terms.direction.col(i) = y / q;
     } else if (!system.normals.col(i).isZero(0)) {
@@ -100,11 +145,16 @@ void Evaluate(const SpringSystem& system, const Points& p, const Points& v, doub
   }
   double count = 0;
   const double rho = DistanceRatio(system, terms.s, count);
+  const MeanDistance mean = MeanOf(system, terms.s);
   terms.R = 1;
-  if (count > 0) terms.R = std::min(RatioOf(system, rho, f), system.r_max);
   for (int i = 0; i < N; ++i) {
     if (system.involved[static_cast<std::size_t>(i)]) {
-      const double f_i = i == 0 ? f : terms.R * f;
+      if (Shared(system, terms.f[i])) {
+        terms.ratio[i] /= mean.value;
+      } else if (i > 0 && count > 0) {
+        terms.ratio[i] = terms.R = std::min(RatioOf(system, rho, terms.f[i]), system.r_max);
+      }
+      const double f_i = terms.ratio[i] * terms.f[i];
       terms.acc.col(i) -= system.share[i] * (system.kc * terms.xc.col(i) + system.dc * v.col(i) +
                                              f_i * terms.direction.col(i));
     }
@@ -176,7 +226,7 @@ Mat<Dim> DirectionDerivative(const SpringSystem& system, const Points& p, const 
 }
 
 template <int Dim>
-void Jacobian(const SpringSystem& system, const Points& p, const Points& v, double f,
+void Jacobian(const SpringSystem& system, const Points& p, const Points& v,
               const SpringTerms& terms, MatrixXd& Jp, MatrixXd& Jv) {
   const int N = system.num_fingers();
   Jp.setZero();
@@ -185,33 +235,43 @@ void Jacobian(const SpringSystem& system, const Points& p, const Points& v, doub
   const Mat<Dim> I = Mat<Dim>::Identity();
   double count = 0;
   const double rho = DistanceRatio(system, terms.s, count);
-  // dR/drho: zero where the cap holds or the ratio does not apply.
-  double dR_drho = 0;
-  if (count > 0 && terms.R < system.r_max) dR_drho = RatioSlope(system, rho, f);
+  const MeanDistance mean = MeanOf(system, terms.s);
   for (int i = 0; i < N; ++i) {
     const Index a = Dim * i;
     if (system.involved[static_cast<std::size_t>(i)]) {
-      const double f_i = i == 0 ? f : terms.R * f;
-      Jp.template block<Dim, Dim>(a, a) -=
-          system.share[i] * (system.kc * ContactDerivative<Dim>(system, p, i) +
-                             f_i * DirectionDerivative<Dim>(system, p, terms, i, f));
+      const double f = terms.f[i];
+      const Mat<Dim> dxc = ContactDerivative<Dim>(system, p, i);
+      Mat<Dim> dforce = system.kc * dxc;
+      if (Shared(system, f)) {
+        // f xc bent / mean s, at a fixed mean.
+        dforce += (f / mean.value) * BentDerivative<Dim>(system, terms, i, f) * dxc;
+      } else {
+        dforce += (terms.ratio[i] * f) * DirectionDerivative<Dim>(system, p, terms, i, f);
+      }
+      Jp.template block<Dim, Dim>(a, a) -= system.share[i] * dforce;
       Jv.template block<Dim, Dim>(a, a) -= system.share[i] * system.dc * I;
     }
     Jv.template block<Dim, Dim>(a, a) -= system.d0 * I;
   }
-  if (dR_drho != 0 && f != 0) {
-    for (int j = 0; j < N; ++j) {
-      if (!system.involved[static_cast<std::size_t>(j)]) continue;
-      const double drho_ds = j == 0 ? -rho / terms.s[0] : system.share[j] / (count * terms.s[0]);
-      const Vec<Dim> u_j = terms.u.col(j);
-      const Vec<Dim> dR_dp =
-          (dR_drho * drho_ds) * (ContactDerivative<Dim>(system, p, j).transpose() * u_j);
-      for (int i = 1; i < N; ++i) {
-        if (!InVirtualFinger(system, i)) continue;
-        const Vec<Dim> direction = terms.direction.col(i);
-        Jp.template block<Dim, Dim>(Dim * i, Dim * j) -=
-            (system.share[i] * f) * direction * dR_dp.transpose();
+  // The ratios, by the distance of every finger.
+  for (int j = 0; j < N; ++j) {
+    if (!system.involved[static_cast<std::size_t>(j)]) continue;
+    const Vec<Dim> u_j = terms.u.col(j);
+    const Vec<Dim> ds_dp = ContactDerivative<Dim>(system, p, j).transpose() * u_j;
+    const double drho_ds =
+        count == 0 ? 0 : (j == 0 ? -rho / terms.s[0] : system.share[j] / (count * terms.s[0]));
+    for (int i = 0; i < N; ++i) {
+      if (!system.involved[static_cast<std::size_t>(i)]) continue;
+      double slope = 0;
+      if (Shared(system, terms.f[i])) {
+        slope = -terms.ratio[i] / mean.value * system.share[j] / mean.count;
+      } else if (i > 0 && count > 0 && terms.ratio[i] < system.r_max) {
+        slope = RatioSlope(system, rho, terms.f[i]) * drho_ds;  // zero where the cap holds
       }
+      if (slope == 0 || terms.f[i] == 0) continue;
+      const Vec<Dim> direction = terms.direction.col(i);
+      Jp.template block<Dim, Dim>(Dim * i, Dim * j) -=
+          (system.share[i] * terms.f[i] * slope) * direction * ds_dp.transpose();
     }
   }
   for (int i = 0; i < N; ++i) {
@@ -227,7 +287,7 @@ SpringSystem MakeSpringSystem(int num_fingers, int dim, double mass) {
   system.dim = dim;
   system.mass = Eigen::VectorXd::Constant(num_fingers, mass);
   system.anchors = MatrixXd::Zero(dim, num_fingers);
-  system.normals = MatrixXd::Zero(dim, num_fingers);
+  system.normals = system.bend = MatrixXd::Zero(dim, num_fingers);
   system.rest_radius = Eigen::VectorXd::Zero(num_fingers);
   system.involved.assign(static_cast<std::size_t>(num_fingers), false);
   system.share = Eigen::VectorXd::Ones(num_fingers);
@@ -240,9 +300,10 @@ void CheckSpringSystem(const SpringSystem& system) {
               system.dim);
   ThrowUnless(N >= 1 && system.anchors.rows() == system.dim && system.anchors.cols() == N &&
                   system.normals.rows() == system.dim && system.normals.cols() == N &&
+                  system.bend.rows() == system.dim && system.bend.cols() == N &&
                   system.rest_radius.size() == N && static_cast<int>(system.involved.size()) == N &&
                   system.share.size() == N,
-              "spring system: anchors, normals, radii, involved and share do not fit "
+              "spring system: anchors, normals, bend, radii, involved and share do not fit "
               "{} fingers in {}-D",
               N, system.dim);
   ThrowUnless(system.mass.minCoeff() > 0 && system.mass.allFinite(),
@@ -272,6 +333,13 @@ std::vector<std::pair<int, int>> SpringTopology(std::string_view name) {
 
 void EvaluateSprings(const SpringSystem& system, const Eigen::Ref<const MatrixXd>& p,
                      const Eigen::Ref<const MatrixXd>& v, double f, SpringTerms& terms) {
+  terms.f.setConstant(system.num_fingers(), f);
+  EvaluateSprings(system, p, v, terms.f, terms);
+}
+
+void EvaluateSprings(const SpringSystem& system, const Eigen::Ref<const MatrixXd>& p,
+                     const Eigen::Ref<const MatrixXd>& v, const Eigen::VectorXd& f,
+                     SpringTerms& terms) {
   const auto E = static_cast<Index>(system.springs.size());
   const Index N = system.num_fingers();
   terms.x.resize(system.dim, E);
@@ -281,23 +349,25 @@ void EvaluateSprings(const SpringSystem& system, const Eigen::Ref<const MatrixXd
   terms.direction.resize(system.dim, N);
   terms.acc.resize(system.dim, N);
   terms.s.resize(N);
+  terms.ratio.resize(N);
+  if (&f != &terms.f) terms.f = f;
   if (system.dim == 2) {
-    Evaluate<2>(system, p, v, f, terms);
+    Evaluate<2>(system, p, v, terms);
   } else {
-    Evaluate<3>(system, p, v, f, terms);
+    Evaluate<3>(system, p, v, terms);
   }
 }
 
 void SpringJacobian(const SpringSystem& system, const Eigen::Ref<const MatrixXd>& p,
-                    const Eigen::Ref<const MatrixXd>& v, double f, const SpringTerms& terms,
+                    const Eigen::Ref<const MatrixXd>& v, const SpringTerms& terms,
                     MatrixXd& dacc_dp, MatrixXd& dacc_dv) {
   const Index n = system.num_coordinates();
   dacc_dp.resize(n, n);
   dacc_dv.resize(n, n);
   if (system.dim == 2) {
-    Jacobian<2>(system, p, v, f, terms, dacc_dp, dacc_dv);
+    Jacobian<2>(system, p, v, terms, dacc_dp, dacc_dv);
   } else {
-    Jacobian<3>(system, p, v, f, terms, dacc_dp, dacc_dv);
+    Jacobian<3>(system, p, v, terms, dacc_dp, dacc_dv);
   }
 }
 

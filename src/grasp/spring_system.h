@@ -20,8 +20,9 @@
 //
 // Ratio "balanced" is ours: rho^2 equalises distances before it lets fingers arrive, and hands do
 // not open along contact normals (a finger unfolds across them). There f < 0 pushes every finger
-// towards its place in the opened hand, in proportion to its way there (R = 1), and f > 0 uses R =
-// rho: both make the fingers arrive together, which is what Eq. (4) is for.
+// towards its place in the opened hand, in proportion to its way there, and f > 0 back in
+// proportion to its distance s_i / (mean s), along xc_i - |xc_i|^2 bend_i: straight, or on an arc.
+// Both make the fingers arrive together, which is what Eq. (4) is for.
 #pragma once
 
 #include <Eigen/Core>
@@ -58,6 +59,7 @@ struct SpringSystem {
   // vectors whose lengths share f among the fingers (kBalanced). Where L > 0 the radius is used
   // instead, where a column is zero u_i.
   Eigen::MatrixXd normals;
+  Eigen::MatrixXd bend;               // dim x N, 1/m, of the ways back to the contacts (kBalanced)
   double kc = 1, dc = 0.3;            // auxiliary spring N/m and damper N s/m, of every finger
   double d0 = 0;                      // ambient damper, N s/m
   double eps_s = 1e-6, eps_c = 1e-3;  // soft norms, m
@@ -87,6 +89,8 @@ struct SpringTerms {
   Eigen::MatrixXd xc, u;      // dim x N: Eq. (3), (6), m; direction of the central force
   Eigen::MatrixXd direction;  // dim x N: u, or the outward direction while f < 0
   Eigen::VectorXd s;          // N, m
+  Eigen::VectorXd f;          // N: central force given for each finger, N
+  Eigen::VectorXd ratio;      // N: of it that acts on the finger: 1, R, or ours
   double R = 1;               // Eq. (4)
   Eigen::MatrixXd acc;        // dim x N, m/s^2
 };
@@ -95,11 +99,15 @@ struct SpringTerms {
 // use of `terms`.
 void EvaluateSprings(const SpringSystem& system, const Eigen::Ref<const Eigen::MatrixXd>& p,
                      const Eigen::Ref<const Eigen::MatrixXd>& v, double f, SpringTerms& terms);
+// The same where every finger has a central force of its own, N of them.
+void EvaluateSprings(const SpringSystem& system, const Eigen::Ref<const Eigen::MatrixXd>& p,
+                     const Eigen::Ref<const Eigen::MatrixXd>& v, const Eigen::VectorXd& f,
+                     SpringTerms& terms);
 
 // Analytic derivatives of the accelerations (finger-major, dim N rows) with respect to positions
-// and velocities. `terms` is that of EvaluateSprings at the same state.
+// and velocities. `terms` is that of EvaluateSprings at the same state and force.
 void SpringJacobian(const SpringSystem& system, const Eigen::Ref<const Eigen::MatrixXd>& p,
-                    const Eigen::Ref<const Eigen::MatrixXd>& v, double f, const SpringTerms& terms,
+                    const Eigen::Ref<const Eigen::MatrixXd>& v, const SpringTerms& terms,
                     Eigen::MatrixXd& dacc_dp, Eigen::MatrixXd& dacc_dv);
 
 // Kinetic energy + springs k/2 (r-l)^2 + involved contacts kc/2 (q-L)^2, J. Never grows with f = 0

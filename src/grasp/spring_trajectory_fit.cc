@@ -156,7 +156,7 @@ std::optional<SpringTrajectory> TrajectoryFit::Simulate(const VectorXd& x, std::
   const CentralForce force = WithEstimate(o.force, estimate);
   MatrixXd p0, v0;
   StartStates(x, i, p0, v0);
-  const SpringIntegration integration = {.step = options_.step, .tolerance = 1e-11};
+  const SpringIntegration integration = {.step = options_.step, .tolerance = 1e-9};
   if (dp == nullptr) {
     return IntegrateSprings(system, MakeForceProfile(force), p0, v0, o.t, integration);
   }

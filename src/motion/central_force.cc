@@ -72,29 +72,47 @@ CentralForce MakeCentralForce(const MotionSamples& motion, double gamma, std::op
   return force;
 }
 
-double EvaluateCentralForce(const CentralForce& force, double t) {
+namespace {
+
+// gamma |a| at t, after the delay; 0 outside the table.
+double Magnitude(const CentralForce& force, double t) {
   const double time = t - force.delay;
-  double f = 0;
-  if (time >= force.t[0] && time <= force.t[force.t.size() - 1]) {
-    f = BlendedSign(time - force.t_switch, force.blend) * force.gamma *
-        Interpolate(force.t, force.a, time);
-    if (f > 0) f *= force.beta;
-  }
+  if (time < force.t[0] || time > force.t[force.t.size() - 1]) return 0;
+  return force.gamma * Interpolate(force.t, force.a, time);
+}
+
+// With the sign that it has at t, changed `lag` after the switch.
+double SignedForce(const CentralForce& force, double magnitude, double lag, double t) {
+  const double closes = force.t_switch + force.delay + lag;
+  double f = BlendedSign(t - closes, force.blend) * magnitude;
+  if (f > 0) f *= force.beta;
   if (force.hold <= 0) return f;
   if (t >= force.T) return std::max(f, force.hold);
-  const double closes = force.t_switch + force.delay;
   if (!force.ramp || t <= closes) return f;
   const double x = (t - closes) / (force.T - closes);
   return std::max(f, force.hold * x * x * (3 - 2 * x));
 }
 
+}  // namespace
+
+double EvaluateCentralForce(const CentralForce& force, double t) {
+  return SignedForce(force, Magnitude(force, t), 0, t);
+}
+
+void EvaluateCentralForces(const CentralForce& force, double t, VectorXd& f) {
+  const double magnitude = Magnitude(force, t);
+  for (Index i = 0; i < f.size(); ++i) {
+    f[i] = SignedForce(force, magnitude, i < force.lag.size() ? force.lag[i] : 0, t);
+  }
+}
+
 std::vector<double> CentralForceKinks(const CentralForce& force) {
-  std::vector<double> kinks = {force.t[0] + force.delay,
-                               force.t_switch + force.delay - 0.5 * force.blend,
-                               force.t_switch + force.delay,
-                               force.t_switch + force.delay + 0.5 * force.blend,
-                               force.T,
+  std::vector<double> kinks = {force.t[0] + force.delay, force.T,
                                force.t[force.t.size() - 1] + force.delay};
+  for (Index i = 0; i < std::max<Index>(1, force.lag.size()); ++i) {
+    const double closes = force.t_switch + force.delay + (i < force.lag.size() ? force.lag[i] : 0);
+    for (const double part : {-0.5, 0.0, 0.5}) kinks.push_back(closes + part * force.blend);
+  }
   std::sort(kinks.begin(), kinks.end());
   kinks.erase(std::unique(kinks.begin(), kinks.end()), kinks.end());
   return kinks;
@@ -104,7 +122,12 @@ ForceProfile MakeForceProfile(const CentralForce& force) {
   RequireIncreasing(force.t, "central force");
   ThrowUnless(force.a.size() == force.t.size(), "central force: {} times, {} accelerations",
               force.t.size(), force.a.size());
-  return {[force](double t) { return EvaluateCentralForce(force, t); }, CentralForceKinks(force)};
+  ForceProfile profile = {[force](double t) { return EvaluateCentralForce(force, t); },
+                          CentralForceKinks(force)};
+  if (force.lag.size() > 0) {
+    profile.each = [force](double t, VectorXd& f) { EvaluateCentralForces(force, t, f); };
+  }
+  return profile;
 }
 
 ForceProfile MakeForceProfile(const VectorXd& t, const VectorXd& f) {

@@ -4,8 +4,8 @@
 //
 // t_switch is the first sample of largest speed. The paper asks for the smallest |a|, which also
 // occurs at both ends and is ill defined under noise; at the largest speed of a straight reach
-// |a| = 0. Delay, closing gain, blending and holding force are extensions for human timing, off by
-// default.
+// |a| = 0. Delay, closing gain, blending, lag of single fingers and holding force are extensions
+// for human timing, off by default.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,6 +22,16 @@ namespace springgrasp {
 struct ForceProfile {
   std::function<double(double t)> f;  // N
   std::vector<double> kinks;          // s, increasing
+  // Where fingers have times of their own: fills the force on each at t. Empty: f for all.
+  std::function<void(double t, Eigen::VectorXd& f)> each = {};
+
+  void At(double t, Eigen::VectorXd& forces) const {
+    if (each) {
+      each(t, forces);
+    } else {
+      forces.setConstant(f(t));
+    }
+  }
 };
 
 struct CentralForce {
@@ -34,6 +44,7 @@ struct CentralForce {
   double delay = 0;       // s, of the whole force
   double beta = 1;        // closing gain: multiplies f > 0
   double hold = 0;        // N; after T the force never falls below it
+  Eigen::VectorXd lag;    // s, N: how much later a finger's force changes sign; empty: none
   bool ramp = false;      // nor, from the (delayed) switch on, below a ramp that rises to it at T
 };
 
@@ -47,6 +58,8 @@ CentralForce MakeCentralForce(const MotionSamples& motion, double gamma = 1,
 
 // The force at time t, N.
 double EvaluateCentralForce(const CentralForce& force, double t);
+// The force on each of f.size() fingers, N.
+void EvaluateCentralForces(const CentralForce& force, double t, Eigen::VectorXd& f);
 
 // Times at which the force jumps or bends by construction: start of the (delayed) force, switch,
 // end of the reach, end of the table.

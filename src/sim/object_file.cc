@@ -8,6 +8,7 @@
 #include "sim/mjcf_part.h"
 #include "sim/model_index.h"
 #include "sim/mujoco_handles.h"
+#include "sim/object_mesh.h"
 
 namespace springgrasp {
 namespace {
@@ -111,6 +112,38 @@ ObjectFile ReadObjectFile(const std::string& path) {
   ThrowUnless(file.mass > 0, "{}: the object has no mass, expected mass or density of its geoms",
               path);
   return file;
+}
+
+TriangleMesh ReadObjectMesh(const std::string& path) {
+  const ModelPtr model = LoadObject(path);
+  const DataPtr data = MakeData(*model);
+  mj_kinematics(model.get(), data.get());
+  const Pose X_WO = PoseFromXmat(data->xpos + 3, data->xmat + 9);
+  TriangleMesh out;
+  for (int g = 0; g < model->ngeom; ++g) {
+    if (model->geom_bodyid[g] == 0 || (model->geom_contype[g] | model->geom_conaffinity[g]) == 0) {
+      continue;
+    }
+    ThrowUnless(model->geom_type[g] == mjGEOM_MESH,
+                "{}: a part of the object is no mesh; give a primitive as sphere:D, cylinder:DxH "
+                "or box:XxYxZ",
+                path);
+    const Pose X_WP = PoseFromXmat(data->geom_xpos + 3 * g, data->geom_xmat + 9 * g);
+    const Pose X_OP = X_WO.inverse() * X_WP;
+    const int mesh = model->geom_dataid[g];
+    const int first = static_cast<int>(out.vertices.size());
+    const float* v = model->mesh_vert + 3 * model->mesh_vertadr[mesh];
+    for (int i = 0; i < model->mesh_vertnum[mesh]; ++i, v += 3) {
+      out.vertices.push_back(X_OP * Eigen::Vector3d(v[0], v[1], v[2]));
+    }
+    const int* f = model->mesh_face + 3 * model->mesh_faceadr[mesh];
+    for (int i = 0; i < model->mesh_facenum[mesh]; ++i, f += 3) {
+      out.faces.push_back({first + f[0], first + f[1], first + f[2]});
+    }
+  }
+  ThrowUnless(!out.faces.empty(), "{}: nothing of the object can be touched, expected a mesh",
+              path);
+  return out;
 }
 
 double ReachOf(const std::vector<ObjectPart>& parts, const Eigen::Vector3d& direction_O) {

@@ -54,5 +54,40 @@ TEST(WidestInstant, IsOneThatWasMeasured) {
   EXPECT_GT(std::abs(static_cast<double>(widest) - 50), 9);
 }
 
+// The index comes back on a parabola, and later than the thumb.
+TEST(ClosingBend, IsThatOfTheArcOnWhichAFingerComesBack) {
+  const Vector3d index(0.04, 0, 0), bend(0, 3, -2);
+  FitProblem fit = Opening(Vector3d(-0.03, 0, 0), index, 0);
+  for (Fingertips& tips : fit.p_HF) {
+    const double x = (tips[kIndex] - fit.run.p_HC[kIndex]).x();
+    tips[kIndex] -= x * x * bend;
+  }
+  const Fingertips found = ClosingBend(fit);
+  // Of the chord, which is turned against x by some 0.14 rad.
+  EXPECT_NEAR(found[kIndex].norm(), bend.norm(), 0.05 * bend.norm());
+  EXPECT_GT(found[kIndex].normalized().dot(bend.normalized()), std::cos(0.17));
+  EXPECT_LT(found[kThumb].norm(), 1e-6);
+  EXPECT_EQ(found[kRing], Vector3d::Zero());
+}
+
+TEST(ClosingBend, AndLagAreNotReadFromAFingerThatHardlyMoves) {
+  const FitProblem fit = Opening(Vector3d(-0.009, 0, 0), Vector3d(0.04, 0, 0), 0);
+  EXPECT_EQ(ClosingBend(fit)[kThumb], Vector3d::Zero());
+  EXPECT_EQ(ClosingLag(fit)[kThumb], 0);
+  EXPECT_EQ(ClosingLag(fit)[kIndex], 0);
+}
+
+TEST(ClosingLag, IsHowMuchLaterThanTheMeanAFingerCloses) {
+  FitProblem fit = Opening(Vector3d(-0.03, 0, 0), Vector3d(0.04, 0, 0), 0);
+  const std::vector<Fingertips> on_time = fit.p_HF;
+  constexpr std::size_t kLater = 8;  // steps of 10 ms
+  for (std::size_t n = kLater; n < fit.p_HF.size(); ++n) {
+    fit.p_HF[n][kIndex] = on_time[n - kLater][kIndex];
+  }
+  const PerFinger<double> lag = ClosingLag(fit);
+  EXPECT_NEAR(lag[kIndex], 0.04, 0.006);
+  EXPECT_NEAR(lag[kThumb], -0.04, 0.006);
+}
+
 }  // namespace
 }  // namespace springgrasp

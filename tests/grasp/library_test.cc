@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "grasp/aperture.h"
 #include "grasp/generate.h"
 #include "grasp/learn.h"
-#include "grasp/learn_fit.h"
 
 namespace springgrasp {
 namespace {
@@ -38,26 +38,25 @@ TEST(ShippedLibrary, IsWhatItsDemonstrationsTeach) {
   }
 }
 
-// Wanted are 3 mm of the involved fingers, missed where a tripod's thumb moves on an arc (4.4 mm)
-// and barely by two others, and 8 mm of the rest.
+// Wanted are 3 mm of the involved fingers, missed by the pinch's thumb (3.2 mm), and 8 mm of the
+// rest.
 TEST(ShippedLibrary, ReproducesItsTrackedDemonstrations) {
   int within = 0, involved = 0;
   for (const LibraryEntry& entry : ReadLibrary(ShippedLibrary())) {
     SCOPED_TRACE(entry.grasp.name);
     const GraspQuality& quality = entry.grasp.quality;
     for (int i = 0; i < kNumFingers; ++i) {
-      EXPECT_LT(quality.rmse[i], entry.grasp.involved[i] ? 0.0045 : 0.008) << kFingerNames[i];
+      EXPECT_LT(quality.rmse[i], entry.grasp.involved[i] ? 0.0035 : 0.008) << kFingerNames[i];
       if (!entry.grasp.involved[i]) continue;
       ++involved;
       within += quality.rmse[i] <= 0.003;
     }
     EXPECT_LT(quality.reach_rmse, 0.002);
     EXPECT_LT(std::abs(quality.aperture_reproduced / quality.aperture - 1), 0.10);
-    // Wanted is 0.08; the lateral's peak is flat and comes one sample of the 10 ms track later.
-    EXPECT_LT(std::abs(quality.aperture_time_reproduced - quality.aperture_time), 0.084);
+    EXPECT_LT(std::abs(quality.aperture_time_reproduced - quality.aperture_time), 0.08);
   }
   EXPECT_EQ(involved, 12);
-  EXPECT_GE(within, 9);
+  EXPECT_GE(within, 11);
 }
 
 // Hands open widest at 60 to 75 % of a reach, and hold what they have closed on.
@@ -73,23 +72,11 @@ TEST(ShippedLibrary, ApertureAndLandingFollowPeopleForEverySizeAndSpeed) {
                                               : ParseShape(fmt::format("sphere:{}", width));
         options.duration = duration;
         const FingertipMotion motion = GenerateMotion(grasp, options);
-        const double start = Aperture(motion.samples.front().p_HF, motion.involved);
-        double widest = 0, at = 0;
-        for (const FingertipMotionSample& sample : motion.samples) {
-          const double aperture = Aperture(sample.p_HF, motion.involved);
-          if (aperture > widest) {
-            widest = aperture;
-            at = sample.t / motion.T;
-          }
-          if (sample.t < motion.T - 1e-9) continue;
-          for (int i = 0; i < kNumFingers; ++i) {
-            if (!motion.involved[i]) continue;
-            EXPECT_LT((sample.p_HF[i] - motion.X_HO * motion.p_OC[i]).norm(), 0.0011) << sample.t;
-          }
-        }
-        EXPECT_GT(widest, start + 0.005);
-        EXPECT_GE(at, 0.60);
-        EXPECT_LE(at, 0.75);
+        const WidestAperture aperture = FindWidestAperture(motion);
+        EXPECT_GT(aperture.widest, aperture.start + 0.005);
+        EXPECT_GE(aperture.at, 0.60);
+        EXPECT_LE(aperture.at, 0.75);
+        EXPECT_LT(ContactError(motion, motion.T, 1.5 * motion.T), 0.0011);
       }
     }
   }

@@ -258,9 +258,19 @@ TEST(SpringIntegrator, StepsAllocateNothing) {
   }
 }
 
-TEST(SpringIntegrator, SensitivitiesAgreeWithCentralDifferences) {
-  const SpringSystem system = GraspSystem(true);
+class SensitivitiesTest : public testing::TestWithParam<bool> {};
+
+TEST_P(SensitivitiesTest, AgreeWithCentralDifferences) {
+  SpringSystem system = GraspSystem(true);
   CentralForce force = ReachForce(0.04, 0.005);
+  if (GetParam()) {  // as profile human has it
+    RandomEngine engine = MakeStream(13, 0, "spring_integrator_test");
+    system.ratio = ForceRatio::kBalanced;
+    system.opening = OpeningDirection::kOutward;
+    system.normals = RandomPoints(engine, 2, 5, 1.0);
+    system.bend = RandomPoints(engine, 2, 5, 4.0);
+    force.lag = 0.05 * RandomPoints(engine, 5, 1, 1.0);
+  }
   force.blend = 0.1;
   force.delay = 0.1;
   force.beta = 1.5;
@@ -300,6 +310,8 @@ TEST(SpringIntegrator, SensitivitiesAgreeWithCentralDifferences) {
     EXPECT_LT((dp.col(q) - numeric).norm(), 2e-3 * numeric.norm()) << "parameter " << q;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(PaperAndHuman, SensitivitiesTest, testing::Bool());
 
 }  // namespace
 }  // namespace springgrasp

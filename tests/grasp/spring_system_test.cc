@@ -50,10 +50,14 @@ SpringSystem Make(const Variant& variant, RandomEngine& engine) {
   system.ratio = variant.ratio;
   system.opening = variant.opening;
   system.rest_radius.setConstant(variant.radius);
+  system.bend = RandomPoints(engine, variant.dim, 5, 8.0);
+  system.bend.col(2).setZero();
   return system;
 }
 
-VectorXd Acceleration(const SpringSystem& system, const MatrixXd& p, const MatrixXd& v, double f) {
+template <typename Force>
+VectorXd Acceleration(const SpringSystem& system, const MatrixXd& p, const MatrixXd& v,
+                      const Force& f) {
   SpringTerms terms;
   EvaluateSprings(system, p, v, f, terms);
   return terms.acc.reshaped();
@@ -67,8 +71,12 @@ TEST(SpringSystem, AnalyticJacobianAgreesWithCentralDifferences) {
     const MatrixXd v = RandomPoints(engine, variant.dim, 5, 0.3);
     SpringTerms terms;
     MatrixXd Jp, Jv;
-    EvaluateSprings(system, p, v, variant.f, terms);
-    SpringJacobian(system, p, v, variant.f, terms, Jp, Jv);
+    // Some fingers still open while others close.
+    VectorXd f = VectorXd::Constant(5, variant.f);
+    f[1] *= -0.5;
+    f[4] *= 2;
+    EvaluateSprings(system, p, v, f, terms);
+    SpringJacobian(system, p, v, terms, Jp, Jv);
     const double h = 1e-7;
     MatrixXd Jp_numeric(Jp.rows(), Jp.cols()), Jv_numeric = Jp_numeric;
     for (Index c = 0; c < Jp.cols(); ++c) {
@@ -76,15 +84,13 @@ TEST(SpringSystem, AnalyticJacobianAgreesWithCentralDifferences) {
       up.reshaped()[c] += h;
       down.reshaped()[c] -= h;
       Jp_numeric.col(c) =
-          (Acceleration(system, up, v, variant.f) - Acceleration(system, down, v, variant.f)) /
-          (2 * h);
+          (Acceleration(system, up, v, f) - Acceleration(system, down, v, f)) / (2 * h);
       up = v;
       down = v;
       up.reshaped()[c] += h;
       down.reshaped()[c] -= h;
       Jv_numeric.col(c) =
-          (Acceleration(system, p, up, variant.f) - Acceleration(system, p, down, variant.f)) /
-          (2 * h);
+          (Acceleration(system, p, up, f) - Acceleration(system, p, down, f)) / (2 * h);
     }
     EXPECT_LT((Jp - Jp_numeric).norm(), 1e-5 * Jp.norm());
     EXPECT_LT((Jv - Jv_numeric).norm(), 1e-5 * Jv.norm());
@@ -106,6 +112,7 @@ TEST(SpringSystem, RotationAndTranslationCarryThrough) {
     SpringSystem moved = system;
     moved.anchors = (R * system.anchors).colwise() + shift;
     moved.normals = R * system.normals;
+    moved.bend = R * system.bend;
     const MatrixXd expected =
         R * Acceleration(system, p, v, variant.f).reshaped(variant.dim, 5).matrix();
     const MatrixXd p_moved = (R * p).colwise() + shift;
@@ -183,6 +190,47 @@ TEST(SpringSystem, RatioIsOneAtEqualDistancesAndCapped) {
   EXPECT_EQ(terms.R, 1);
 }
 
+// Of ratio balanced: whatever the distances, all fingers come nearer at the same rate.
+TEST(SpringSystem, BalancedForceClosesEveryFingerInProportionToItsDistance) {
+  RandomEngine engine = MakeStream(5, 0, "balanced");
+  for (int draw = 0; draw < 20; ++draw) {
+    SpringSystem system = RandomSystem(engine, 3, "brace9");
+    system.ratio = ForceRatio::kBalanced;
+    const MatrixXd p = RandomPoints(engine, 3, 5, 0.08), zero = MatrixXd::Zero(3, 5);
+    const MatrixXd closing =
+        (Acceleration(system, p, zero, 0.1) - Acceleration(system, p, zero, 0.0)).reshaped(3, 5);
+    const MatrixXd force = closing * system.mass.asDiagonal();
+    const double rate = force.col(0).norm() / (p - system.anchors).col(0).norm();
+    for (int i = 0; i < 5; ++i) {
+      if (!system.involved[static_cast<std::size_t>(i)]) continue;
+      EXPECT_LT((force + rate * (p - system.anchors)).col(i).norm(), 1e-12);
+    }
+  }
+}
+
+// Along the parabola y = x n - x^2 bend, up to terms of third order in x.
+TEST(SpringSystem, BentWaysBackFollowTheirArc) {
+  RandomEngine engine = MakeStream(6, 0, "bend");
+  for (int draw = 0; draw < 20; ++draw) {
+    SpringSystem system = RandomSystem(engine, 3, "brace9");
+    system.ratio = ForceRatio::kBalanced;
+    const Eigen::Vector3d n = RandomPoints(engine, 3, 1, 1).normalized();
+    const Eigen::Vector3d other = RandomPoints(engine, 3, 1, 1);
+    const Eigen::Vector3d bend = 5 * n.cross(other).normalized();
+    system.bend.col(0) = bend;
+    for (const double x : {0.01, 0.04}) {
+      MatrixXd p = system.anchors;
+      p.colwise() += Eigen::Vector3d(0.02, 0, 0);
+      p.col(0) = system.anchors.col(0) + x * n - x * x * bend;
+      SpringTerms terms;
+      EvaluateSprings(system, p, MatrixXd::Zero(3, 5), 0.1, terms);
+      const Eigen::Vector3d tangent = (n - 2 * x * bend).normalized();
+      EXPECT_LT((terms.direction.col(0).normalized() - tangent).norm(),
+                1.1 * std::pow(x * bend.norm(), 3));
+    }
+  }
+}
+
 TEST(SpringSystem, DegenerateStatesStayFinite) {
   RandomEngine engine = MakeStream(4, 0, "degenerate");
   for (const Variant& variant : Variants()) {
@@ -191,7 +239,7 @@ TEST(SpringSystem, DegenerateStatesStayFinite) {
     SpringTerms terms;
     MatrixXd Jp, Jv;
     EvaluateSprings(system, p, MatrixXd::Zero(variant.dim, 5), variant.f, terms);
-    SpringJacobian(system, p, MatrixXd::Zero(variant.dim, 5), variant.f, terms, Jp, Jv);
+    SpringJacobian(system, p, MatrixXd::Zero(variant.dim, 5), terms, Jp, Jv);
     EXPECT_TRUE(terms.acc.allFinite() && Jp.allFinite() && Jv.allFinite());
   }
 }

@@ -103,6 +103,31 @@ TEST(CentralForce, KinksCoverEveryJump) {
   }
 }
 
+TEST(CentralForce, LagMovesTheSwitchOfOneFingerAlone) {
+  CentralForce force = MakeCentralForce(Reach(), 0.04);
+  force.blend = 0.1;
+  force.delay = 0.1;
+  force.hold = 0.02;
+  force.ramp = true;
+  force.lag = Eigen::Vector3d(0, -0.07, 0.05);
+  const ForceProfile profile = MakeForceProfile(force);
+  Eigen::VectorXd f(3);
+  for (double t = 0; t < 1.5; t += 0.01) {
+    profile.At(t, f);
+    EXPECT_EQ(f[0], EvaluateCentralForce(force, t)) << t;
+    for (int i = 1; i < 3; ++i) {
+      CentralForce own = force;
+      own.t_switch += force.lag[i];
+      EXPECT_NEAR(f[i], EvaluateCentralForce(own, t), 1e-15) << t;
+    }
+  }
+  profile.At(force.t_switch + 0.1 - 0.02, f);
+  EXPECT_LT(f[0], 0);
+  EXPECT_GT(f[1], 0);
+  EXPECT_LT(f[2], 0);
+  EXPECT_TRUE(std::is_sorted(profile.kinks.begin(), profile.kinks.end()));
+}
+
 TEST(ForceTable, IsLinearBetweenItsPointsAndHeldOutside) {
   for (const Eigen::Vector3d& t : {Eigen::Vector3d(0, 1, 2), Eigen::Vector3d(0, 0.1, 2)}) {
     const ForceProfile table = MakeForceProfile(t, Eigen::Vector3d(1, -1, 3));
