@@ -15,7 +15,7 @@ namespace springgrasp {
 //   speed  |q_k - q_(k-1)|^2 / (speed_deviation dt)^2
 //   bend   |q_(k+1) - 2 q_k + q_(k-1)|^2 / (acceleration_deviation dt^2)^2
 struct SmoothHandOptions {
-  HandIkOptions ik;
+  HandIkOptions ik = {};
   double dt = 0.005;                    // s
   double outlier = 0.003;               // m
   double speed_deviation = 4;           // rad/s
