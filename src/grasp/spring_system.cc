@@ -73,6 +73,18 @@ MeanDistance MeanOf(const SpringSystem& system, const Eigen::VectorXd& s) {
   return mean;
 }
 
+// How much of a closing force is shared by distance, the rest being alike for all: all of it but
+// between two grasps, where a finger that takes part by half hovers far from its contact.
+double Sharing(const SpringSystem& system) {
+  double sharing = 1;
+  for (int i = 0; i < system.num_fingers(); ++i) {
+    if (!system.involved[static_cast<std::size_t>(i)]) continue;
+    const double whole = 2 * system.share[i] - 1;
+    sharing = std::min(sharing, whole * whole);
+  }
+  return sharing;
+}
+
 // Whether the way of finger i back to its contact is bent, xc as f > 0 sees it then, and the
 // derivative of that by xc.
 bool Bent(const SpringSystem& system, int i, double f) {
@@ -146,11 +158,17 @@ void Evaluate(const SpringSystem& system, const Points& p, const Points& v, Spri
   double count = 0;
   const double rho = DistanceRatio(system, terms.s, count);
   const MeanDistance mean = MeanOf(system, terms.s);
+  const double sharing = Sharing(system);
   terms.R = 1;
   for (int i = 0; i < N; ++i) {
     if (system.involved[static_cast<std::size_t>(i)]) {
       if (Shared(system, terms.f[i])) {
         terms.ratio[i] /= mean.value;
+        if (sharing < 1) {
+          terms.direction.col(i) =
+              (sharing * terms.ratio[i]) * terms.direction.col(i) + (1 - sharing) * terms.u.col(i);
+          terms.ratio[i] = 1;
+        }
       } else if (i > 0 && count > 0) {
         terms.ratio[i] = terms.R = std::min(RatioOf(system, rho, terms.f[i]), system.r_max);
       }
@@ -236,6 +254,7 @@ void Jacobian(const SpringSystem& system, const Points& p, const Points& v,
   double count = 0;
   const double rho = DistanceRatio(system, terms.s, count);
   const MeanDistance mean = MeanOf(system, terms.s);
+  const double sharing = Sharing(system);
   for (int i = 0; i < N; ++i) {
     const Index a = Dim * i;
     if (system.involved[static_cast<std::size_t>(i)]) {
@@ -244,7 +263,11 @@ void Jacobian(const SpringSystem& system, const Points& p, const Points& v,
       Mat<Dim> dforce = system.kc * dxc;
       if (Shared(system, f)) {
         // f xc bent / mean s, at a fixed mean.
-        dforce += (f / mean.value) * BentDerivative<Dim>(system, terms, i, f) * dxc;
+        dforce += (sharing * f / mean.value) * BentDerivative<Dim>(system, terms, i, f) * dxc;
+        if (sharing < 1) {
+          const Vec<Dim> u = terms.u.col(i);
+          dforce += ((1 - sharing) * f / terms.s[i]) * (I - u * u.transpose()) * dxc;
+        }
       } else {
         dforce += (terms.ratio[i] * f) * DirectionDerivative<Dim>(system, p, terms, i, f);
       }
@@ -264,8 +287,14 @@ void Jacobian(const SpringSystem& system, const Points& p, const Points& v,
       if (!system.involved[static_cast<std::size_t>(i)]) continue;
       double slope = 0;
       if (Shared(system, terms.f[i])) {
-        slope = -terms.ratio[i] / mean.value * system.share[j] / mean.count;
-      } else if (i > 0 && count > 0 && terms.ratio[i] < system.r_max) {
+        const Vec<Dim> way = Bent(system, i, terms.f[i]) ? BentDistance<Dim>(system, terms, i)
+                                                         : Vec<Dim>(terms.xc.col(i));
+        const double part = -sharing / (mean.value * mean.value) * system.share[j] / mean.count;
+        Jp.template block<Dim, Dim>(Dim * i, Dim * j) -=
+            (system.share[i] * terms.f[i] * part) * way * ds_dp.transpose();
+        continue;
+      }
+      if (i > 0 && count > 0 && terms.ratio[i] < system.r_max) {
         slope = RatioSlope(system, rho, terms.f[i]) * drho_ds;  // zero where the cap holds
       }
       if (slope == 0 || terms.f[i] == 0) continue;

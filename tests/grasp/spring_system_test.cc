@@ -65,8 +65,13 @@ VectorXd Acceleration(const SpringSystem& system, const MatrixXd& p, const Matri
 
 TEST(SpringSystem, AnalyticJacobianAgreesWithCentralDifferences) {
   RandomEngine engine = MakeStream(1, 0, "jacobian");
+  std::vector<std::pair<Variant, double>> cases;  // whole, and between two grasps
   for (const Variant& variant : Variants()) {
-    const SpringSystem system = Make(variant, engine);
+    for (const double share : {1.0, 0.7}) cases.emplace_back(variant, share);
+  }
+  for (const auto& [variant, share] : cases) {
+    SpringSystem system = Make(variant, engine);
+    system.share[0] = share;
     const MatrixXd p = RandomPoints(engine, variant.dim, 5, 0.08);
     const MatrixXd v = RandomPoints(engine, variant.dim, 5, 0.3);
     SpringTerms terms;
