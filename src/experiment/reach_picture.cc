@@ -77,7 +77,7 @@ cv::Mat DrawReachReport(const ReachReport& report, const Scene& scene) {
   const ReachMap& first = report.maps.front();
   const int width = kLeft + kCell * first.columns, height = kTop + kCell * first.rows + kGap;
   const int panels = static_cast<int>(report.maps.size());
-  cv::Mat picture(height * panels + 44, 2 * width + kGap, CV_8UC3, cv::Scalar(255, 255, 255));
+  cv::Mat picture(height * panels + 56, 2 * width + kGap, CV_8UC3, cv::Scalar(255, 255, 255));
   for (int i = 0; i < panels; ++i) {
     const ReachMap& map = report.maps[static_cast<std::size_t>(panels - 1 - i)];
     const std::string at = fmt::format("z {:.2f} m, ", map.z);
