@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "grasp/section_mean.h"
 
 namespace springgrasp {
 namespace {
@@ -91,17 +92,10 @@ std::optional<Contact> ContactOfRay(const TriangleMesh& mesh, const ContactRay& 
 }
 
 double MeanSectionRadius(const TriangleMesh& mesh, const Vector3d& normal) {
-  const Vector3d n = normal.norm() > kTiny ? Vector3d(normal.normalized()) : Vector3d::UnitZ();
-  const Vector3d u = n.unitOrthogonal();
-  const Vector3d v = n.cross(u);
-  constexpr int kDirections = 720;
-  double sum = 0;
-  for (int i = 0; i < kDirections; ++i) {
-    const double angle = 2 * std::numbers::pi * (i + 0.5) / kDirections;
-    const auto hit = LastHit(mesh, Vector3d::Zero(), std::cos(angle) * u + std::sin(angle) * v);
-    sum += hit ? hit->length : 0.0;
-  }
-  return sum / kDirections;
+  return MeanOverSection(normal, [&](const Vector3d& d) {
+    const auto hit = LastHit(mesh, Vector3d::Zero(), d);
+    return hit ? hit->length : 0.0;
+  });
 }
 
 }  // namespace springgrasp

@@ -11,16 +11,6 @@
 namespace springgrasp {
 namespace {
 
-KnownTips TipsAt(const HumanHand& hand, const Eigen::VectorXd& q) {
-  std::vector<Pose> X_HB;
-  ForwardKinematics(hand.tree, q, X_HB);
-  KnownTips tips;
-  for (int f = 0; f < kNumFingers; ++f) {
-    tips[f] = FramePose(hand.tree, X_HB, hand.tip[f]).translation();
-  }
-  return tips;
-}
-
 bool WithinRanges(const KinematicTree& tree, const Eigen::VectorXd& q) {
   return (q.array() >= tree.lower.array()).all() && (q.array() <= tree.upper.array()).all();
 }

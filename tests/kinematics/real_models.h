@@ -10,6 +10,7 @@
 
 #include "base/files.h"
 #include "base/random.h"
+#include "kinematics/hand_ik.h"
 #include "kinematics/human_hand.h"
 #include "kinematics/robot_hand.h"
 #include "sim/kinematic_tree_of.h"
@@ -21,6 +22,17 @@ inline std::shared_ptr<mjModel> LoadModel(const std::string& path) {
   mjModel* model = mj_loadXML((SourceFolder() + "/models/" + path).c_str(), nullptr, error, 500);
   if (model == nullptr) throw std::runtime_error(error);
   return {model, mj_deleteModel};
+}
+
+// Fingertips of a posture, in H.
+inline KnownTips TipsAt(const HumanHand& hand, const Eigen::VectorXd& q) {
+  std::vector<Pose> X_HB;
+  ForwardKinematics(hand.tree, q, X_HB);
+  KnownTips tips;
+  for (int f = 0; f < kNumFingers; ++f) {
+    tips[f] = FramePose(hand.tree, X_HB, hand.tip[f]).translation();
+  }
+  return tips;
 }
 
 inline const HumanHand& TestHumanHand() {

@@ -10,16 +10,6 @@
 namespace springgrasp {
 namespace {
 
-KnownTips TipsAt(const HumanHand& hand, const Eigen::VectorXd& q) {
-  std::vector<Pose> X_HB;
-  ForwardKinematics(hand.tree, q, X_HB);
-  KnownTips tips;
-  for (int f = 0; f < kNumFingers; ++f) {
-    tips[f] = FramePose(hand.tree, X_HB, hand.tip[f]).translation();
-  }
-  return tips;
-}
-
 double Bend(const std::vector<Eigen::VectorXd>& motion) {
   double most = 0;
   for (std::size_t k = 2; k < motion.size(); ++k) {
