@@ -8,6 +8,7 @@
 #include "apps/command.h"
 #include "apps/progress.h"
 #include "base/error.h"
+#include "experiment/film_outcomes.h"
 #include "experiment/runner.h"
 #include "experiment/table.h"
 #include "experiment/trial.h"
@@ -83,7 +84,20 @@ int Run(Options options) {
   {
     ProgressPrinter printer(options.quiet);
     run.on_progress = [&printer](const RunProgress& progress) { printer(progress); };
-    end = RunTrials(trials, store, RunTrial, run);
+    auto memory = std::make_shared<TrialMemory>();  // of each worker process its own
+    end = RunTrials(
+        trials, store,
+        [memory](const TrialSpec& spec, const TrialOutput& output) {
+          return RunTrialWith(*memory, spec, output);
+        },
+        run);
+  }
+  if (end == RunEnd::kComplete && experiment.record.videos == RecordWhich::kOutcomes) {
+    const std::vector<StoredTrial> stored = store.Trials();
+    const auto film = TrialsToFilm(trials, stored, store.directory());
+    if (!FilmTrials(film, stored, store.directory(), RunTrial, run.stop_requested)) {
+      end = RunEnd::kStoppedEarly;
+    }
   }
   if (!options.quiet) PrintResults(store);
   return end == RunEnd::kComplete ? kDone : kStoppedEarly;

@@ -46,6 +46,7 @@ int Main(int argc, char** argv) {
   app.set_version_flag("--version", VersionText);
   int exit_code = kDone;
   AddRunCommand(app, exit_code);
+  AddReplayCommand(app, exit_code);
   AddStatusCommand(app, exit_code);
   AddExportCommand(app, exit_code);
   AddCheckCommand(app, exit_code);

@@ -2,7 +2,9 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -50,6 +52,17 @@ void WriteFileAtomically(const std::string& path, std::string_view content) {
     out.close();
     ThrowUnless(out.good(), "{}: cannot be written", path);
   });
+}
+
+ScratchFolder::ScratchFolder(const std::string& parent)
+    : path_((fs::path(parent) / ".scratch_XXXXXX").string()) {
+  ThrowUnless(mkdtemp(path_.data()) != nullptr, "{}: no folder can be made there ({})", parent,
+              std::strerror(errno));
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
 }
 
 std::string SourceFolder() {

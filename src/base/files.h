@@ -18,6 +18,20 @@ void WriteFileAtomically(const std::string& path, std::string_view content);
 void WriteThroughTemporary(const std::string& path,
                            const std::function<void(const std::string& temporary)>& write);
 
+// A new folder below `parent` with a name of its own; removed with all it holds at the end.
+class ScratchFolder {
+ public:
+  // Throws Error if it cannot be made.
+  explicit ScratchFolder(const std::string& parent);
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 // Folder of the files shipped with the program (models, scenes, experiments).
 std::string SourceFolder();
 

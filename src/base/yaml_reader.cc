@@ -318,6 +318,23 @@ std::string ApplyOverride(const std::string& yaml_text, const std::string& key_e
   return Emitted(root);
 }
 
+std::string RemoveKey(const std::string& yaml_text, const std::string& path) {
+  YAML::Node root = Load(yaml_text, "(configuration)");
+  YAML::Node node;
+  node.reset(root);
+  std::string rest = path;
+  for (auto dot = rest.find('.'); dot != std::string::npos; dot = rest.find('.')) {
+    const std::string key = rest.substr(0, dot);
+    const YAML::Node next =
+        node.IsSequence() ? node[std::strtoul(key.c_str(), nullptr, 10)] : node[key];
+    if (!next.IsDefined() || next.IsScalar() || next.IsNull()) return Emitted(root);
+    node.reset(next);
+    rest = rest.substr(dot + 1);
+  }
+  if (node.IsMap()) node.remove(rest);
+  return Emitted(root);
+}
+
 std::string NormaliseYaml(const std::string& yaml_text) {
   return Emitted(Load(yaml_text, "(configuration)"));
 }

@@ -72,6 +72,9 @@ class YamlReader {
 // (`scene.objects.0.mass=0.2`). Throws Error if the text is not of that form.
 std::string ApplyOverride(const std::string& yaml_text, const std::string& key_equals_value);
 
+// The text without the value at a dotted path, as NormaliseYaml gives it; absent keys are fine.
+std::string RemoveKey(const std::string& yaml_text, const std::string& path);
+
 // The same values as block YAML without comments or spare blanks; keys keep their order.
 std::string NormaliseYaml(const std::string& yaml_text);
 

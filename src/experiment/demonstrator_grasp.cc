@@ -25,7 +25,8 @@ Eigen::Matrix3d HandAxes(const Eigen::Vector3d& x, const Eigen::Vector3d& z) {
   return R;
 }
 
-TypePrior PriorOf(const DemonstratorHand& hand, const std::string& type, const Shape& shape) {
+TypePrior PriorOf(const DemonstratorHand& hand, const std::string& type, const Shape& shape,
+                  bool from_side) {
   const FingerAngles curled{0, 0.75, 1.0, 0.5};
   const Eigen::Vector3d X = Eigen::Vector3d::UnitX(), Y = Eigen::Vector3d::UnitY(),
                         Z = Eigen::Vector3d::UnitZ();
@@ -34,13 +35,13 @@ TypePrior PriorOf(const DemonstratorHand& hand, const std::string& type, const S
   if (type == "pinch") {
     prior.q =
         PostureOf(hand.tree, {1.1, 0.0, 0.3, 0.3}, {{{0, 0.8, 0.6, 0.3}, curled, curled, curled}});
-    prior.R_OH = HandAxes(-Z, Y);
+    prior.R_OH = HandAxes(from_side ? -X : -Z, Y);
     prior.p_HO = s * Eigen::Vector3d(0.10, 0.03, -0.06);
   } else if (type == "tripod") {
     prior.q = PostureOf(hand.tree, {1.2, 0.0, 0.3, 0.3},
                         {{{0.05, 0.8, 0.6, 0.3}, {-0.05, 0.8, 0.6, 0.3}, curled, curled}});
     // Turned so that a face of a box lies between thumb and fingers.
-    prior.R_OH = Eigen::AngleAxisd(0.2, Z) * HandAxes(-Z, Y);
+    prior.R_OH = Eigen::AngleAxisd(0.2, Z) * HandAxes(from_side ? -X : -Z, Y);
     prior.p_HO = s * Eigen::Vector3d(0.10, 0.02, -0.06);
   } else if (type == "power") {
     const FingerAngles wrapped{0, 0.8, 0.9, 0.5};
@@ -67,7 +68,7 @@ class HeldProblem {
         type_(type),
         shape_(shape),
         style_(style),
-        prior_(PriorOf(hand, type, shape)),
+        prior_(PriorOf(hand, type, shape, style.from_side)),
         involved_(InvolvedFingers(type)) {
     prior_.R_OH = prior_.R_OH * Eigen::AngleAxisd(style.pitch, Eigen::Vector3d::UnitY()) *
                   Eigen::AngleAxisd(style.roll, Eigen::Vector3d::UnitX());
@@ -157,8 +158,9 @@ class HeldProblem {
         Add(i == thin ? 0.0 : (tips[kThumb][i] + tips[kIndex][i]) / 2 * 0.2 * kHeight);
       }
     } else {
-      // Fingers of a power grasp lie above each other, those of the others beside each other.
-      const double fingers = type_ == "power" ? 0.1 * kHeight : kHeight;
+      // Fingers that come from the side lie above each other, others beside each other.
+      const bool above_each_other = type_ == "power" || style_.from_side;
+      const double fingers = above_each_other ? 0.1 * kHeight : kHeight;
       for (int f = 0; f < kNumFingers; ++f) {
         if (involved_[f]) Add((tips[f].z() - style_.height) * (f == kThumb ? kHeight : fingers));
       }

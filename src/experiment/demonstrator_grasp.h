@@ -15,9 +15,10 @@ namespace springgrasp {
 
 // What varies between two people (or two tries).
 struct GraspStyle {
-  double height = 0;  // m, of the contacts above the object's middle
-  double pitch = 0;   // rad, fingers up (positive) from the type's usual direction
-  double roll = 0;    // rad, about the fingers' direction
+  double height = 0;       // m, of the contacts above the object's middle
+  double pitch = 0;        // rad, fingers up (positive) from the type's usual direction
+  double roll = 0;         // rad, about the fingers' direction
+  bool from_side = false;  // pinch, tripod: level instead of from above
 };
 
 struct HeldPosture {
@@ -32,7 +33,8 @@ struct HeldPosture {
 // Joint angles and hand pose by least squares: involved tip centres one tip radius outside the
 // surface, thumb opposed to the other fingers, finger segments outside the object, otherwise as
 // near as possible to the type's natural posture and direction (pinch and tripod from above with
-// the palm towards -y of O, power and lateral level with the fingers towards -x, thumb up).
+// the palm towards -y of O, power and lateral level with the fingers towards -x, thumb up; pinch
+// and tripod from the side as these).
 HeldPosture SolveHeldPosture(const DemonstratorHand& hand, const std::string& type,
                              const Shape& shape, const GraspStyle& style = {});
 

@@ -43,12 +43,12 @@ struct Approach {
   Eigen::Vector3d from, bow, turn;
 };
 
-Approach ApproachOf(const std::string& type) {
-  if (type == "pinch" || type == "tripod") {
+Approach ApproachOf(const std::string& type, bool from_side) {
+  if ((type == "pinch" || type == "tripod") && !from_side) {
     // From the right and behind, over the object, the last part from above.
     return {{0.9, 0.1, 0.25}, {0, 0, 0.16}, {0.0, -0.1, -0.25}};
   }
-  if (type == "power") return {{0.95, 0.1, -0.2}, {-0.1, 0.22, 0.0}, {0.1, 0.15, 0.0}};
+  if (type != "lateral") return {{0.95, 0.1, -0.2}, {-0.1, 0.22, 0.0}, {0.1, 0.15, 0.0}};
   return {{0.95, 0.05, -0.25}, {0.0, 0.05, 0.05}, {0.1, 0.15, 0.0}};
 }
 
@@ -111,7 +111,9 @@ Eigen::VectorXd StartPosture(const DemonstratorHand& hand, const HeldPosture& he
   }
   Shape smaller = options.shape;
   smaller.size *= kSmaller;
-  return SolveHeldPosture(hand, options.type, smaller).q;
+  GraspStyle style;
+  style.from_side = options.approach == "side";
+  return SolveHeldPosture(hand, options.type, smaller, style).q;
 }
 
 // The whole movement. `bow` scales the path's curvature, `wider` is added to the peak aperture, m.
@@ -175,14 +177,15 @@ double PathPenetration(const DemonstratorHand& hand, const Shape& shape,
 
 HandMotion SynthesiseGrasp(const DemonstratorHand& hand, const SynthesiseOptions& options,
                            RandomEngine& engine) {
-  const Style style = DrawStyle(engine);
+  Style style = DrawStyle(engine);
+  style.grasp.from_side = options.approach == "side";
   const HeldPosture held = SolveHeldPosture(hand, options.type, options.shape, style.grasp);
   ThrowUnless(held.worst_gap < kMaxGap && held.worst_penetration < kMaxPenetration,
               "a hand of {:.0f} mm cannot hold {} by a {} grasp (fingertips {:.0f} mm off)",
               1000 * hand.size.length, FormatShape(options.shape), options.type,
               1000 * std::max(held.worst_gap, held.worst_penetration));
 
-  const Approach approach = ApproachOf(options.type);
+  const Approach approach = ApproachOf(options.type, style.grasp.from_side);
   HandMotion motion;
   motion.source = "synthesised " + options.type;
   motion.type = options.type;

@@ -11,10 +11,11 @@
 namespace springgrasp {
 
 struct SynthesiseOptions {
-  std::string type = "pinch";  // pinch | tripod | power | lateral
-  Shape shape;                 // of the object
-  double rate = 100;           // Hz
-  double hold = 0.3;           // s at rest after the closing
+  std::string type = "pinch";      // pinch | tripod | power | lateral
+  Shape shape;                     // of the object
+  std::string approach = "usual";  // usual | side: pinch and tripod level, as a power grasp
+  double rate = 100;               // Hz
+  double hold = 0.3;               // s at rest after the closing
 };
 
 // The motion in the object's frame (X_WO = identity, z up, camera side -y): minimum-jerk wrist on a

@@ -11,13 +11,21 @@
 
 namespace springgrasp {
 
-// Which trials of a case leave a file: none, repetition 0 of each case, or all.
-enum class RecordWhich { kNone, kOne, kAll };
+// Which trials of a condition leave a file: none, repetition 0, or all; videos also: the first
+// success and the first failure, filmed once the run is over.
+enum class RecordWhich { kNone, kOne, kAll, kOutcomes };
 
 struct RecordOptions {
   RecordWhich videos = RecordWhich::kNone;
   RecordWhich overlays = RecordWhich::kNone;
   RecordWhich trajectories = RecordWhich::kOne;
+};
+
+// A value of the scene that each repetition draws anew, between two bounds. The draws of a key are
+// the same in all cases and conditions.
+struct SampledKey {
+  std::string key;  // dotted path into the scene's YAML
+  double low = 0, high = 0;
 };
 
 // Where the demonstrations of a case come from.
@@ -44,7 +52,13 @@ struct ExperimentCase {
   std::vector<SceneOverride> set;
   // Grid: every combination of the values of each scene key is a condition of its own.
   std::vector<std::pair<std::string, std::vector<std::string>>> variations;
+  std::vector<SampledKey> sample;
+  std::string sampling = "random";  // random | sobol: a sequence that fills the space evenly
 };
+
+// The values of one repetition, in the order of c.sample. Sobol: point `repetition` of the
+// sequence, each coordinate turned by an offset of its own (Cranley-Patterson), from seed and key.
+std::vector<double> DrawSample(const ExperimentCase& c, std::uint64_t seed, int repetition);
 
 struct Experiment {
   std::string source;  // file, for messages and for finding scenes beside it
@@ -71,6 +85,8 @@ struct PlannedTrial {
   std::string id;  // TrialIdentity(spec)
   TrialSpec spec;
   TrialOutput output;  // what to record; folder still empty
+  // Trials of one group are faster one after the other in one process (ObservationKey's hash).
+  std::uint64_t group = 0;
 };
 
 // Every trial, in the order of the file: cases, conditions, demonstrations, repetitions, the open

@@ -1,7 +1,10 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <boost/random/sobol.hpp>
+#include <boost/random/uniform_01.hpp>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -12,6 +15,7 @@
 #include "base/yaml_reader.h"
 #include "demonstration/demonstration.h"
 #include "experiment/experiment.h"
+#include "experiment/observation_key.h"
 #include "experiment/trial_identity.h"
 
 namespace springgrasp {
@@ -119,11 +123,77 @@ void BuildScene(const Experiment& e, const ExperimentCase& c,
   if (!file.empty()) ReadDemonstration(file);
 }
 
+// `condition` with the values that one repetition drew.
+std::vector<SceneOverride> WithSample(const Experiment& e, const ExperimentCase& c,
+                                      std::vector<SceneOverride> condition, TrialSpec& spec) {
+  const std::vector<double> values = DrawSample(c, e.seed, spec.repetition);
+  spec.drawn.clear();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    spec.drawn.emplace_back(c.sample[i].key, values[i]);
+    condition.emplace_back(c.sample[i].key, fmt::format("{}", values[i]));
+  }
+  return condition;
+}
+
 bool Wanted(RecordWhich which, bool first) {
   return which == RecordWhich::kAll || (which == RecordWhich::kOne && first);
 }
 
+// All repetitions of one condition with one demonstration.
+std::vector<PlannedTrial> TrialsOf(const Experiment& e, const ExperimentCase& c,
+                                   const std::vector<SceneOverride>& condition,
+                                   const std::string& file) {
+  TrialSpec spec;
+  spec.demonstration = file.empty() ? "synthesised" : fs::path(file).stem().string();
+  spec.grasp_type = c.grasp_type;
+  spec.until = c.until;
+  spec.dim = c.dim;
+  spec.profile = c.profile;
+  spec.object_centre = c.contacts == "centre";
+  spec.criteria = e.criteria;
+  spec.substitute = e.substitute;
+  spec.seed = e.seed;
+  std::vector<PlannedTrial> trials;
+  const int repetitions = c.repetitions > 0 ? c.repetitions : e.repetitions;
+  for (int r = 0; r < repetitions; ++r) {
+    spec.repetition = r;
+    if (r == 0 || !c.sample.empty()) {
+      BuildScene(e, c, WithSample(e, c, condition, spec), file, spec);
+    }
+    const bool with_open_hand = e.with_open_hand && c.until == "perform";
+    for (const bool open_hand : {false, true}) {
+      if (open_hand && !with_open_hand) continue;
+      spec.open_hand = open_hand;
+      PlannedTrial trial{TrialIdentity(spec), spec, {}};
+      trial.group = HashText(ObservationKey(spec));
+      const bool first = r == 0 && !open_hand;
+      trial.output.video = Wanted(e.record.videos, first);
+      trial.output.overlay = Wanted(e.record.overlays, first);
+      trial.output.trajectories = Wanted(e.record.trajectories, first);
+      trials.push_back(std::move(trial));
+    }
+  }
+  return trials;
+}
+
 }  // namespace
+
+std::vector<double> DrawSample(const ExperimentCase& c, std::uint64_t seed, int repetition) {
+  std::vector<double> values;
+  if (c.sample.empty()) return values;
+  const bool sobol = c.sampling == "sobol";
+  boost::random::sobol sequence(c.sample.size());
+  sequence.discard(static_cast<std::uintmax_t>(repetition) * c.sample.size());
+  boost::random::uniform_01<double> unit;
+  for (const SampledKey& key : c.sample) {
+    RandomEngine engine =
+        MakeStream(seed, static_cast<std::uint64_t>(sobol ? 0 : repetition), "sample " + key.key);
+    double u = Uniform01(engine);
+    if (sobol) u = std::fmod(u + unit(sequence), 1);
+    values.push_back(key.low + u * (key.high - key.low));
+  }
+  return values;
+}
 
 std::vector<PlannedTrial> ExpandExperiment(const Experiment& e) {
   std::vector<PlannedTrial> trials;
@@ -134,28 +204,8 @@ std::vector<PlannedTrial> ExpandExperiment(const Experiment& e) {
       std::string name = c.name;
       for (const auto& [key, value] : condition) name += fmt::format(" {}={}", key, value);
       for (const std::string& file : files) {
-        TrialSpec spec;
-        spec.case_name = name;
-        spec.demonstration = file.empty() ? "synthesised" : fs::path(file).stem().string();
-        BuildScene(e, c, condition, file, spec);
-        spec.grasp_type = c.grasp_type;
-        spec.until = c.until;
-        spec.dim = c.dim;
-        spec.profile = c.profile;
-        spec.object_centre = c.contacts == "centre";
-        spec.criteria = e.criteria;
-        spec.substitute = e.substitute;
-        spec.seed = e.seed;
-        const bool with_open_hand = e.with_open_hand && c.until == "perform";
-        const int repetitions = c.repetitions > 0 ? c.repetitions : e.repetitions;
-        for (int i = 0; i < repetitions * (with_open_hand ? 2 : 1); ++i) {
-          spec.repetition = with_open_hand ? i / 2 : i;
-          spec.open_hand = with_open_hand && i % 2 == 1;
-          PlannedTrial trial{TrialIdentity(spec), spec, {}};
-          const bool first = i == 0;
-          trial.output.video = Wanted(e.record.videos, first);
-          trial.output.overlay = Wanted(e.record.overlays, first);
-          trial.output.trajectories = Wanted(e.record.trajectories, first);
+        for (PlannedTrial& trial : TrialsOf(e, c, condition, file)) {
+          trial.spec.case_name = name;
           const auto [entry, is_new] = owner.emplace(trial.id, name);
           ThrowUnless(is_new, "{}: cases '{}' and '{}' hold the same trial", e.source,
                       entry->second, name);

@@ -16,12 +16,14 @@ namespace fs = std::filesystem;
 const std::vector<std::string> kTypes = {"pinch", "tripod", "power", "lateral"};
 
 RecordWhich ReadWhich(YamlReader& yaml, const std::string& key, RecordWhich value) {
-  const std::vector<std::string> names = {"none", "one", "all"};
+  std::vector<std::string> names = {"none", "one", "all"};
+  if (key == "videos") names.push_back("outcomes");
   std::string name = names[static_cast<std::size_t>(value)];
   yaml.Read(key, name, names);
   return name == "none"  ? RecordWhich::kNone
          : name == "one" ? RecordWhich::kOne
-                         : RecordWhich::kAll;
+         : name == "all" ? RecordWhich::kAll
+                         : RecordWhich::kOutcomes;
 }
 
 CaseDemonstration ReadCaseDemonstration(YamlReader yaml) {
@@ -68,6 +70,17 @@ ExperimentCase ReadCase(YamlReader& yaml) {
     c.variations.emplace_back(key, values);
   }
   variations.Finish();
+  YamlReader sample = yaml.Child("sample");
+  for (const std::string& key : sample.Keys()) {
+    std::vector<double> bounds;
+    sample.Read(key, bounds);
+    ThrowUnless(bounds.size() == 2 && bounds[0] <= bounds[1],
+                "{}: {} is drawn between two numbers, expected [low, high]", sample.Where(key),
+                key);
+    c.sample.push_back({key, bounds[0], bounds[1]});
+  }
+  sample.Finish();
+  yaml.Read("sampling", c.sampling, {"random", "sobol"});
   yaml.Finish();
   return c;
 }

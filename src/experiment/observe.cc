@@ -72,7 +72,7 @@ HandMotion PrepareDemonstration(const Scene& scene, const ObserveStage& stage,
                 "{}: demonstrator.object is missing: a synthesised {} needs an "
                 "object of known shape",
                 scene.source, who.type);
-    motion = SynthesiseGrasp(hand, {who.type, *shape}, engine);
+    motion = SynthesiseGrasp(hand, {who.type, *shape, who.approach}, engine);
   }
   const HandMotion as_performed = WithLeadIn(motion, hand.open);
   Pose X_WM;

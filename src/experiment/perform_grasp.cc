@@ -4,68 +4,17 @@
 
 #include <algorithm>
 #include <numbers>
-#include <opencv2/imgproc.hpp>
 #include <optional>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "experiment/reach_report.h"
 #include "experiment/trajectory_csv.h"
-#include "render/camera_renderer.h"
-#include "render/video_writer.h"
+#include "experiment/trial_film.h"
 #include "sim/scene_builder.h"
 
 namespace springgrasp {
 namespace {
-
-constexpr double kVideoFps = 25;
-
-// Films a trial, the scene's overview cameras side by side. It has a model of its own, with looks,
-// so that a filmed trial is the same to the bit as one that is not.
-class Filmer {
- public:
-  Filmer(const Simulation& simulation, const Scene& scene, const PerformGraspOptions& options)
-      : model_(BuildModel(scene)),
-        data_(MakeData(*model_)),
-        renderer_(*model_, RenderOptions::Pretty(640, 480)),
-        writer_(options.video, kVideoFps) {
-    ThrowUnless(model_->nq == simulation.model().nq, "the filmed model has other joints");
-    if (!options.camera.empty()) {
-      cameras_ = {options.camera};
-    } else {
-      for (const SceneCamera& camera : scene.cameras) cameras_.push_back(camera.name);
-      if (cameras_.empty()) cameras_ = {"front", "close"};
-      if (cameras_.size() > 2) cameras_.resize(2);
-    }
-  }
-
-  void Look(const Simulation& simulation, Phase phase) {
-    if (simulation.time() < next_) return;
-    next_ += 1 / kVideoFps;
-    std::copy_n(simulation.data().qpos, model_->nq, data_->qpos);
-    mj_kinematics(model_.get(), data_.get());
-    mj_comPos(model_.get(), data_.get());
-    mj_camlight(model_.get(), data_.get());
-    std::vector<cv::Mat> views;
-    for (const std::string& camera : cameras_) {
-      views.push_back(renderer_.Bgr(*data_, CameraView::Named(camera)));
-    }
-    cv::Mat frame;
-    cv::hconcat(views, frame);
-    DrawText(frame, fmt::format("{:5.2f} s  {}", simulation.time(), PhaseName(phase)));
-    writer_.Add(frame);
-  }
-
-  void Finish() { writer_.Finish(); }
-
- private:
-  ModelPtr model_;
-  DataPtr data_;
-  CameraRenderer renderer_;
-  VideoWriter writer_;
-  std::vector<std::string> cameras_;
-  double next_ = 0;
-};
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
@@ -158,14 +107,17 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene,
   perform.actuation = options.actuation;
   perform.shape = scene.objects[0].shape.value_or(plan.plan->shape);
   perform.max_finger_force = scene.max_finger_force;
-  std::optional<Filmer> filmer;
-  if (!options.video.empty()) filmer.emplace(simulation, scene, options);
+  std::optional<TrialFilm> film;
+  if (!options.video.empty()) {
+    film.emplace(simulation, robot, scene, *plan.plan,
+                 FilmOptions{options.video, options.camera, options.annotate});
+  }
   const Performance performance =
       Perform(simulation, robot, scene.objects[0].name, body.hand.tree, body.arm.tree, *plan.plan,
               perform, [&](const Simulation& now, Phase phase) {
-                if (filmer) filmer->Look(now, phase);
+                if (film) film->Look(now, phase);
               });
-  if (filmer) filmer->Finish();
+  if (film) film->Finish();
   if (!options.trajectory.empty()) {
     WriteFileAtomically(options.trajectory,
                         FormatTrajectory(performance.trajectory, robot.layout()));

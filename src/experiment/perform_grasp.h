@@ -19,6 +19,7 @@ struct PerformGraspOptions {
   bool object_centre = false;  // Eq. (6) alone, no contact points
   std::string camera;          // of the video; empty: the scene's overview cameras side by side
   std::string video;           // .mp4, if not empty
+  bool annotate = false;       // contact forces and fingertips drawn into the video
   std::string trajectory;      // .csv of what the robot did, if not empty
   std::string motion;          // .csv of the generated fingertip motion, if not empty
 };

@@ -45,12 +45,6 @@ TrialResult RunAndRecord(const PlannedTrial& trial, const std::string& directory
   return result;
 }
 
-// A message is one line in every report.
-void MakeOneLine(std::string& text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-}
-
 std::string Label(const TrialSpec& spec) {
   std::string label = spec.case_name;
   if (spec.demonstration != "synthesised") label += " " + spec.demonstration;
@@ -117,9 +111,26 @@ class Run {
       auto idle = std::find_if(workers_.begin(), workers_.end(),
                                [](const Worker& worker) { return !worker.busy(); });
       if (idle == workers_.end()) idle = workers_.emplace(workers_.end(), task_, log_);
-      idle->Start(queue_.front());
-      queue_.pop_front();
+      const auto next = NextFor(*idle);
+      idle->Start(*next);
+      queue_.erase(next);
     }
+  }
+
+  // A trial of the group that this worker comes from; else of one that no other is at.
+  std::deque<int>::iterator NextFor(const Worker& worker) {
+    const auto group = [this](int i) { return trials_[static_cast<std::size_t>(i)].group; };
+    if (worker.last() >= 0) {
+      const auto same = std::find_if(queue_.begin(), queue_.end(),
+                                     [&](int i) { return group(i) == group(worker.last()); });
+      if (same != queue_.end()) return same;
+    }
+    const auto free = std::find_if(queue_.begin(), queue_.end(), [&](int i) {
+      return std::none_of(workers_.begin(), workers_.end(), [&](const Worker& other) {
+        return &other != &worker && other.last() >= 0 && group(other.last()) == group(i);
+      });
+    });
+    return free != queue_.end() ? free : queue_.begin();
   }
 
   void Wait() {
@@ -137,10 +148,9 @@ class Run {
     }
   }
 
-  void Store(const PlannedTrial& trial, TrialResult result) {
+  void Store(const PlannedTrial& trial, const TrialResult& result) {
     std::error_code ignored;
     fs::remove_all(TemporaryFolder(store_.directory(), trial.id), ignored);
-    MakeOneLine(result.message);
     store_.Add(trial.id, result);
     ++progress_.done;
     ++progress_.now;
@@ -177,7 +187,10 @@ RunEnd RunTrials(const std::vector<PlannedTrial>& trials, ResultStore& store,
 }
 
 RunDescription DescribeRun(const Experiment& experiment, const std::vector<PlannedTrial>& trials) {
-  RunDescription run{experiment.text, DescribeProvenance(), {}};
+  RunDescription run;
+  run.experiment_yaml = experiment.text;
+  run.source = fs::absolute(experiment.source).lexically_normal();
+  run.provenance = DescribeProvenance();
   for (const PlannedTrial& trial : trials) {
     run.plan.push_back({trial.id, trial.spec.case_name, trial.spec.demonstration,
                         trial.spec.open_hand, trial.spec.repetition, trial.spec.seed,

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -42,23 +43,10 @@ bool WriteAll(int fd, const void* data, std::size_t n) {
   return true;
 }
 
-TrialResult RunOne(const Worker::Task& task, int i) {
-  TrialResult failed;
-  try {
-    return task(i);
-  } catch (const std::exception& e) {
-    failed.message = e.what();
-  } catch (...) {
-    failed.message = "unknown exception";
-  }
-  failed.outcome = Outcome::kError;
-  return failed;
-}
-
 [[noreturn]] void ServeTasks(const Worker::Task& task, int in, int out) {
   std::int32_t i = 0;
   while (ReadAll(in, &i, sizeof(i))) {
-    const std::string bytes = EncodeResult(RunOne(task, i));
+    const std::string bytes = EncodeResult(ResultOrError([&] { return task(i); }));
     const std::uint64_t size = bytes.size();
     if (!WriteAll(out, &size, sizeof(size)) || !WriteAll(out, bytes.data(), bytes.size())) break;
   }
@@ -75,6 +63,23 @@ void RedirectOutput(const std::string& log) {
 }
 
 }  // namespace
+
+TrialResult ResultOrError(const std::function<TrialResult()>& run) {
+  TrialResult result;
+  try {
+    result = run();
+  } catch (const std::exception& e) {
+    result.outcome = Outcome::kError;
+    result.message = e.what();
+  } catch (...) {
+    result.outcome = Outcome::kError;
+    result.message = "unknown exception";
+  }
+  std::replace_if(
+      result.message.begin(), result.message.end(), [](char c) { return c == '\n' || c == '\r'; },
+      ' ');
+  return result;
+}
 
 Worker::Worker(const Task& task, const std::string& log) {
   int down[2], up[2];
@@ -113,6 +118,7 @@ Worker::Worker(Worker&& other) noexcept
       to_child_(std::exchange(other.to_child_, -1)),
       from_child_(std::exchange(other.from_child_, -1)),
       running_(std::exchange(other.running_, -1)),
+      last_(std::exchange(other.last_, -1)),
       received_(std::move(other.received_)) {}
 
 Worker::~Worker() {
@@ -126,7 +132,7 @@ Worker::~Worker() {
 }
 
 void Worker::Start(int i) {
-  running_ = i;
+  running_ = last_ = i;
   received_.clear();
   const std::int32_t number = i;
   // If the child is gone, Receive() reports it.

@@ -11,6 +11,9 @@
 
 namespace springgrasp {
 
+// What `run` returns; what it throws becomes the outcome `error`. The message is one line.
+TrialResult ResultOrError(const std::function<TrialResult()>& run);
+
 class Worker {
  public:
   // Runs task number i and returns its result; what it throws becomes the outcome `error`.
@@ -28,6 +31,7 @@ class Worker {
   void Start(int i);
   bool busy() const { return running_ >= 0; }
   int running() const { return running_; }
+  int last() const { return last_; }  // task started last, -1: none yet
   int read_fd() const { return from_child_; }
 
   // Reads what has come; the result once it is complete. If the child has died: the outcome
@@ -40,7 +44,7 @@ class Worker {
 
   pid_t pid_ = -1;
   int to_child_ = -1, from_child_ = -1;
-  int running_ = -1;
+  int running_ = -1, last_ = -1;
   std::string received_;
 };
 

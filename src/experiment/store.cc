@@ -62,6 +62,7 @@ void CreateDatabase(const std::string& directory, const RunDescription& run) {
     meta.Bind(0, "schema_version").Bind(1, std::to_string(kSchemaVersion)).Run();
     meta.Bind(0, "behaviour_version").Bind(1, std::to_string(kBehaviourVersion)).Run();
     meta.Bind(0, "experiment").Bind(1, run.experiment_yaml).Run();
+    meta.Bind(0, "source").Bind(1, run.source).Run();
     Statement insert = database.Prepare("INSERT INTO trials VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
     std::int64_t position = 0;
     for (const PlanRow& row : run.plan) {
@@ -170,6 +171,8 @@ ResultStore ResultStore::OpenForReading(const std::string& directory) {
   store.CheckVersions();
   return store;
 }
+
+std::string ResultStore::Meta(const std::string& key) { return MetaOf(*database_, key); }
 
 std::set<std::string> ResultStore::FinishedIds() {
   std::set<std::string> ids;

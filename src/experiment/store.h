@@ -40,6 +40,7 @@ struct PlanRow {
 // What a directory is opened for.
 struct RunDescription {
   std::string experiment_yaml;  // effective
+  std::string source;           // absolute path of the file that it was read from
   std::string provenance;
   std::vector<PlanRow> plan;
 };
@@ -64,6 +65,8 @@ class ResultStore {
   std::set<std::string> FinishedIds();
   // One transaction. A second result of the same trial replaces nothing and throws Error.
   void Add(const std::string& id, const TrialResult& result);
+  // A row of the table `meta`; empty if there is none.
+  std::string Meta(const std::string& key);
   // All planned trials in the order of the plan, with wall times.
   std::vector<StoredTrial> Trials();
 

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "experiment/demonstrator_hand.h"
+#include "experiment/observation_key.h"
 #include "experiment/observe.h"
 #include "experiment/perform_grasp.h"
 #include "experiment/trial_observe.h"
@@ -34,7 +35,7 @@ void CheckSubstitutes(const TrialSpec& spec) {
 }
 
 // What the learner is given: tracked, or truth in the place of some of it.
-Demonstration DemonstrationFor(const TrialSpec& spec, const Observation& seen) {
+Demonstration DemonstrationFor(const TrialSpec& spec, const SeenDemonstration& seen) {
   Demonstration demonstration = seen.tracked;
   for (std::size_t i = 0; i < demonstration.samples.size(); ++i) {
     DemonstrationSample& sample = demonstration.samples[i];
@@ -62,9 +63,8 @@ void HoldOpen(double hand_length, Demonstration& demonstration) {
   }
 }
 
-void RecordObservation(const Observation& seen, TrialResult& result) {
-  auto& v = result.values;
-  const ObservationErrors& e = seen.errors;
+std::map<std::string, double> Measurements(const ObservationErrors& e) {
+  std::map<std::string, double> v;
   v["tracking_median_mm"] = 1e3 * e.median_all;
   double worst = 0, coverage = 1;
   for (int f = 0; f < kNumFingers; ++f) {
@@ -78,6 +78,33 @@ void RecordObservation(const Observation& seen, TrialResult& result) {
   v["label_swaps"] = e.label_swaps;
   v["wrist_error_mm"] = 1e3 * e.wrist_median;
   v["wrist_error_deg"] = e.wrist_rotation_median_deg;
+  return v;
+}
+
+// `scene`: poses drawn. A wanted overlay is drawn in any case.
+const SeenDemonstration& See(const TrialSpec& spec, const Scene& scene, const std::string& overlay,
+                             TrialMemory& memory) {
+  if (!overlay.empty()) memory.seen = {};
+  return memory.seen.Get(ObservationKey(spec), [&] {
+    RandomEngine engine = MakeStream(spec.seed, spec.repetition, "observation");
+    ObserveOptions options;
+    options.fps = scene.demonstrator.fps;
+    options.overlay = overlay;
+    const Observation seen = Observe(scene, engine, options);
+    return SeenDemonstration{seen.tracked, seen.truth, seen.shown.involved,
+                             Measurements(seen.errors)};
+  });
+}
+
+const Grasp& Learn(const TrialSpec& spec, const Demonstration& demonstration, TrialMemory& memory) {
+  return memory.grasp.Get(LearningKey(spec), [&] {
+    LearnOptions options;
+    options.type = spec.grasp_type;
+    options.dim = spec.dim;
+    options.profile = spec.profile;
+    options.hand_length = spec.scene.demonstrator.hand_length;
+    return LearnGrasp(demonstration, options);
+  });
 }
 
 void RecordGrasp(const Grasp& grasp, TrialResult& result) {
@@ -115,10 +142,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace
-
-TrialResult RunTrial(const TrialSpec& spec, const TrialOutput& output) {
-  if (spec.until == "observe") return RunObserveTrial(spec, output);
+TrialResult RunToPerform(TrialMemory& memory, const TrialSpec& spec, const TrialOutput& output) {
   CheckSubstitutes(spec);
   ThrowUnless(!spec.scene.objects.empty(), "{}: the scene has no object to grasp",
               spec.scene.source);
@@ -135,12 +159,8 @@ TrialResult RunTrial(const TrialSpec& spec, const TrialOutput& output) {
   RandomEngine pose_engine = stream("pose");
   DrawObjectPoses(scene, pose_engine);
 
-  RandomEngine observation_engine = stream("observation");
-  ObserveOptions observe;
-  observe.fps = scene.demonstrator.fps;
-  observe.overlay = file(output.overlay, "tracking.mp4");
-  const Observation seen = Observe(scene, observation_engine, observe);
-  RecordObservation(seen, result);
+  const SeenDemonstration& seen = See(spec, scene, file(output.overlay, "tracking.mp4"), memory);
+  result.values = seen.values;
   watch.Lap("observe");
 
   Demonstration demonstration = DemonstrationFor(spec, seen);
@@ -149,7 +169,7 @@ TrialResult RunTrial(const TrialSpec& spec, const TrialOutput& output) {
     WriteDemonstration(demonstration, file(true, "demonstration.csv"));
     WriteDemonstration(seen.truth, file(true, "truth.csv"));
   }
-  const std::string untracked = WhyUntracked(demonstration, seen.shown.involved);
+  const std::string untracked = WhyUntracked(demonstration, seen.involved);
   if (!untracked.empty()) {
     result.outcome = Outcome::kUntracked;
     result.message = untracked;
@@ -157,12 +177,7 @@ TrialResult RunTrial(const TrialSpec& spec, const TrialOutput& output) {
     return result;
   }
 
-  LearnOptions learn;
-  learn.type = spec.grasp_type;
-  learn.dim = spec.dim;
-  learn.profile = spec.profile;
-  learn.hand_length = scene.demonstrator.hand_length;
-  const Grasp grasp = LearnGrasp(demonstration, learn);
+  const Grasp& grasp = Learn(spec, demonstration, memory);
   RecordGrasp(grasp, result);
   if (output.trajectories) WriteGrasp(grasp, file(true, "grasp.yaml"));
   watch.Lap("learn");
@@ -173,6 +188,7 @@ TrialResult RunTrial(const TrialSpec& spec, const TrialOutput& output) {
   perform.object_centre = spec.object_centre;
   perform.believe_truth = Substituted(spec, "object_pose");
   perform.video = file(output.video, "grasp.mp4");
+  perform.annotate = output.annotate;
   perform.motion = file(output.trajectories, "motion.csv");
   perform.trajectory = file(output.trajectories, "trajectory.csv");
   TrialResult performed = PerformGrasp(grasp, scene, perform);
@@ -182,6 +198,20 @@ TrialResult RunTrial(const TrialSpec& spec, const TrialOutput& output) {
   result.values.merge(performed.values);
   watch.Lap("perform");
   return result;
+}
+
+}  // namespace
+
+TrialResult RunTrialWith(TrialMemory& memory, const TrialSpec& spec, const TrialOutput& output) {
+  TrialResult result =
+      spec.until == "observe" ? RunObserveTrial(spec, output) : RunToPerform(memory, spec, output);
+  for (const auto& [key, value] : spec.drawn) result.values[key] = value;
+  return result;
+}
+
+TrialResult RunTrial(const TrialSpec& spec, const TrialOutput& output) {
+  TrialMemory memory;
+  return RunTrialWith(memory, spec, output);
 }
 
 }  // namespace springgrasp

@@ -14,6 +14,7 @@ struct TrialSpec {
   // Where it belongs; not part of the identity.
   std::string case_name;      // with its variation: "power" or "power objects.0.mass=0.2"
   std::string demonstration;  // name of the recorded file without extension; "synthesised"
+  std::vector<std::pair<std::string, double>> drawn;  // sampled keys of the scene, as drawn
 
   // Effective parameters: all of these are part of the identity.
   Scene scene;                    // overrides applied, poses not yet drawn; with its demonstrator
@@ -35,6 +36,7 @@ struct TrialOutput {
   std::string folder;         // empty: write nothing
   bool trajectories = false;  // demonstration, grasp, motion and what the robot did
   bool video = false;         // robot and object
+  bool annotate = false;      // contact forces and fingertips drawn into it
   bool overlay = false;       // the tracker's view
 };
 

@@ -48,29 +48,52 @@ Pose Moved(const Pose& X_WH, const Eigen::Vector3d& by_W) {
   return moved;
 }
 
+// Why hand poses were no goal, counted.
+struct GoalFaults {
+  int hand_in_table = 0, out_of_reach = 0, forearm_in_table = 0, no_lift = 0, no_shake = 0;
+};
+
+std::string Describe(const GoalFaults& faults) {
+  std::string text;
+  const auto add = [&](int count, const char* what) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+  };
+  add(faults.out_of_reach, "out of the arm's reach");
+  add(faults.hand_in_table, "with the hand in the table");
+  add(faults.forearm_in_table, "with the forearm in the table");
+  add(faults.no_lift, "that cannot be lifted");
+  add(faults.no_shake, "that cannot be shaken");
+  return text;
+}
+
 // The goal of one free motion: reached, liftable, shakable, clear of the table.
 std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRequest& request,
-                            const ReachOptions& options, const FreeMotion& motion) {
+                            const ReachOptions& options, const FreeMotion& motion,
+                            GoalFaults& faults) {
+  const auto fails = [](int& count) {
+    ++count;
+    return std::nullopt;
+  };
   Goal goal;
   goal.motion = motion;
   goal.X_WH = request.X_WO * motion.X_OF * request.X_HO.inverse();
   const double above = HandAboveTable(hand, goal.X_WH, request.q_hand.back(), request.table_height,
                                       request.table_edge);
-  if (above < kLeastClearance) return std::nullopt;
+  if (above < kLeastClearance) return fails(faults.hand_in_table);
   ArmIkOptions ik;
   ik.starts = 4;
   const std::optional<Eigen::VectorXd> q =
       SolveArmIkFromAnywhere(arm, goal.X_WH, ik, request.q_start);
-  if (!q) return std::nullopt;
+  if (!q) return fails(faults.out_of_reach);
   goal.q = *q;
   const double forearm = ForearmAboveTable(arm, *q, request.table_height, request.table_edge);
-  if (forearm < kLeastClearance) return std::nullopt;
+  if (forearm < kLeastClearance) return fails(faults.forearm_in_table);
   double margin = LimitMargin(arm, *q);
   Eigen::VectorXd lifted_q = *q;
   for (const double part : {0.33, 0.66, 1.0}) {
     const auto next =
         SolveArmIk(arm, Moved(goal.X_WH, Eigen::Vector3d(0, 0, part * options.lift)), lifted_q, ik);
-    if (!next) return std::nullopt;
+    if (!next) return fails(faults.no_lift);
     lifted_q = *next;
     margin = std::min(margin, LimitMargin(arm, lifted_q));
   }
@@ -78,7 +101,7 @@ std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRe
     for (const double side : {-1.0, 1.0}) {
       const Eigen::Vector3d by =
           Eigen::Vector3d(0, 0, options.lift) + side * options.shake * Eigen::Vector3d::Unit(axis);
-      if (!SolveArmIk(arm, Moved(goal.X_WH, by), lifted_q, ik)) return std::nullopt;
+      if (!SolveArmIk(arm, Moved(goal.X_WH, by), lifted_q, ik)) return fails(faults.no_shake);
     }
   }
   goal.score = std::min(margin, kEnoughMargin);
@@ -204,18 +227,20 @@ ReachPlan PlanWithin(const Arm& arm, const RobotHand& hand, const ReachRequest& 
                      const ReachOptions& options) {
   ReachPlan plan;
   std::vector<Goal> goals;
+  GoalFaults faults;
   for (const FreeMotion& motion : FreeMotions(request, options)) {
     ++plan.candidates;
-    std::optional<Goal> goal = TryGoal(arm, hand, request, options, motion);
+    std::optional<Goal> goal = TryGoal(arm, hand, request, options, motion, faults);
     if (goal) goals.push_back(std::move(*goal));
   }
   plan.goals = static_cast<int>(goals.size());
   if (goals.empty()) {
     plan.reason = fmt::format(
-        "no arm posture grasps, lifts and shakes the object at ({:.3f}, {:.3f}, {:.3f}): 0 of {} "
-        "hand poses",
+        "no arm posture grasps, lifts and shakes the object at ({:.3f}, {:.3f}, {:.3f}): of {} "
+        "hand "
+        "poses {}",
         request.X_WO.translation().x(), request.X_WO.translation().y(),
-        request.X_WO.translation().z(), plan.candidates);
+        request.X_WO.translation().z(), plan.candidates, Describe(faults));
     return plan;
   }
   std::stable_sort(goals.begin(), goals.end(),

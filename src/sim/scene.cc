@@ -48,7 +48,7 @@ Pose ObjectStartPose(const Scene& scene, int object) {
   double z = ReachOf(o.parts, -X_WO.linear().transpose() * Eigen::Vector3d::UnitZ());
   if (o.model.empty() && o.shape) z = o.shape->size.z() / 2;
   if (const auto seat = SeatOnRing(o); seat && o.on_ring) z = o.ring_height + seat->height;
-  X_WO.translation().z() = scene.table.height + z;
+  X_WO.translation().z() = scene.table.height + o.pedestal.z() + z;
   return X_WO;
 }
 

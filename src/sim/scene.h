@@ -50,11 +50,13 @@ struct SceneObject {
   bool friction_of_file = false;  // every part of the file keeps its own, `friction` is the least
   std::vector<ObjectPart> parts;  // where the file is solid
   Pose X_WO = Pose::Identity();   // YAML pose: [x, y], [x, y, z] or x y z qw qx qy qz
-  bool resting = true;            // z was not given: stands on the table or its ring
+  bool resting = true;            // z was not given: stands on the table, its ring or pedestal
   double yaw = 0;                 // rad, beside a pose of two or three numbers
   ScenePoseNoise pose_noise;
-  bool on_ring = false;                    // round ones (SeatOnRing): lie on a small fixed ring
-  double ring_height = 0;                  // m, from the table to the ring's bottom (a thin stand)
+  bool on_ring = false;    // round ones (SeatOnRing): lie on a small fixed ring
+  double ring_height = 0;  // m, from the table to the ring's bottom (a thin stand)
+  // Width, depth and height of a fixed block on the table on which it stands (m); zero: none.
+  Eigen::Vector3d pedestal = Eigen::Vector3d::Zero();
   Eigen::Vector3d colour{0.8, 0.25, 0.2};  // red, green, blue, 0..1
   SceneBelief believed;
 };
@@ -84,6 +86,7 @@ struct SceneOcclusion {
 struct SceneDemonstrator {
   std::string kind = "synthesised";  // synthesised | recorded
   std::string type = "pinch";        // pinch | tripod | power | lateral
+  std::string approach = "usual";    // synthesised pinch, tripod: usual (from above) | side
   std::string file;                  // recorded: demonstration CSV
   std::optional<Shape> object;       // the object shown; absent: shape of the scene's first
   bool object_visible = true;        // the object is in the picture

@@ -243,6 +243,20 @@ void AddRing(const Scene& scene, int object, XmlElement* root) {
   SetContact(post, o.friction, scene.physics, 0);
 }
 
+void AddPedestal(const Scene& scene, int object, XmlElement* root) {
+  const SceneObject& o = scene.objects.at(object);
+  if (o.pedestal.z() <= 0) return;
+  const Eigen::Vector3d p_WO = ObjectStartPose(scene, object).translation();
+  const double middle = scene.table.height + o.pedestal.z() / 2;
+  XmlElement* body = Add(ChildOf(root, "worldbody"), "body", o.name + "_pedestal");
+  SetPose(body, YawPose(p_WO.x(), p_WO.y(), middle, o.yaw));
+  XmlElement* block = Add(body, "geom", o.name + "_pedestal");
+  Set(block, "type", "box");
+  Set(block, "size", Text(Eigen::Vector3d(o.pedestal / 2)));
+  SetColour(block, {0.35, 0.37, 0.4});
+  SetContact(block, o.friction, scene.physics, 0);
+}
+
 void AddObject(const Scene& scene, int object, XmlDocument& document) {
   const SceneObject& o = scene.objects.at(object);
   const Pose X_WO = ObjectStartPose(scene, object);

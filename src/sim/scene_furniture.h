@@ -13,6 +13,8 @@ void AddSettings(const Scene& scene, int offscreen_samples, XmlElement* root);
 void AddSurroundings(const Scene& scene, XmlElement* root);
 // Fixed body `table`; its frame is the middle of the top.
 void AddTable(const Scene& scene, XmlElement* root);
+// Fixed body `<object>_pedestal` under an object that stands on one; nothing for others.
+void AddPedestal(const Scene& scene, int object, XmlElement* root);
 // Fixed body `<object>_ring` under an object that is on_ring; nothing for others.
 void AddRing(const Scene& scene, int object, XmlElement* root);
 // Free body `<object>` with joint `<object>_free`.

@@ -98,6 +98,10 @@ SceneObject ReadObject(YamlReader& yaml, const std::string& scene) {
               "{}: on_ring is for spheres, and for files whose parts are spheres on the z axis",
               yaml.Where("on_ring"));
   yaml.Read("ring_height", o.ring_height, {0, 0.5});
+  yaml.Read("pedestal", o.pedestal, {0.005, 0.6});
+  ThrowUnless(!(yaml.Has("pedestal") && (o.on_ring || !o.resting)),
+              "{}: a pedestal is for objects that stand on it: no on_ring, pose of two numbers",
+              yaml.Where("pedestal"));
   yaml.Read("colour", o.colour, kFraction);
   YamlReader believed = yaml.Child("believed");
   believed.Read("position", o.believed.position, {-1, 1});

@@ -57,6 +57,8 @@ TEST_F(ExamplesTest, OnModelsAndGrasps) {
 TEST_F(ExamplesTest, OnExperiments) {
   EXPECT_EQ(Paste("run", "--limit 1").exit_code, 3);
   EXPECT_EQ(Paste("status").exit_code, 0);
+  EXPECT_EQ(Paste("replay").exit_code, 0);
+  EXPECT_TRUE(Wrote("replay.mp4"));
   EXPECT_EQ(Paste("export").exit_code, 0);
   EXPECT_TRUE(Wrote("first_grasps.csv"));
   EXPECT_EQ(Paste("check").exit_code, 1);  // an unfinished run falls short

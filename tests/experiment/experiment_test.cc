@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
 #include <set>
 
 #include "base/error.h"
@@ -74,6 +75,66 @@ TEST(ExperimentTest, VariationsMakeAGrid) {
   EXPECT_EQ(trials[0].spec.case_name, "c objects.0.mass=0.1 physics.impratio=5");
   EXPECT_DOUBLE_EQ(trials[5].spec.scene.objects[0].mass, 0.3);
   EXPECT_DOUBLE_EQ(trials[5].spec.scene.physics.impratio, 10);
+}
+
+constexpr const char* kSampled =
+    "name: sampled\nseed: 1\nrepetitions: 200\ncases:\n"
+    "  - name: c\n    scene: scene.yaml\n    grasp: pinch\n    sampling: random\n"
+    "    sample: {objects.0.mass: [0.1, 0.5], objects.0.friction: [0.6, 1.2]}\n";
+
+TEST(ExperimentTest, EveryRepetitionDrawsItsSample) {
+  const TemporaryFolder folder;
+  for (const char* sampling : {"random", "sobol"}) {
+    const auto trials = ExpandExperiment(
+        SmallExperiment(folder, kSampled, {std::string("cases.0.sampling=") + sampling}));
+    std::set<double> masses;
+    double sum = 0;
+    for (const PlannedTrial& trial : trials) {
+      const SceneObject& object = trial.spec.scene.objects[0];
+      EXPECT_GE(object.mass, 0.1);
+      EXPECT_LT(object.mass, 0.5);
+      EXPECT_EQ(trial.spec.drawn[0], std::make_pair(std::string("objects.0.mass"), object.mass));
+      masses.insert(object.mass);
+      sum += object.friction;
+    }
+    EXPECT_EQ(masses.size(), 200u);
+    EXPECT_NEAR(sum / 200, 0.9, sampling[0] == 's' ? 0.01 : 0.04) << sampling;
+  }
+}
+
+TEST(ExperimentTest, ASobolSampleFillsEveryPartEvenly) {
+  const TemporaryFolder folder;
+  ExperimentCase c = SmallExperiment(folder, kSampled).cases[0];
+  c.sampling = "sobol";
+  std::map<std::pair<int, int>, int> cells;  // 8 x 8 of them
+  for (int r = 0; r < 256; ++r) {
+    const std::vector<double> x = DrawSample(c, 5, r);
+    ++cells[{int((x[0] - 0.1) / 0.05), int((x[1] - 0.6) / 0.075)}];
+  }
+  EXPECT_EQ(cells.size(), 64u);
+  for (const auto& [cell, n] : cells) EXPECT_LE(n, 9);
+}
+
+TEST(ExperimentTest, OneMoreSampledKeyLeavesTheOtherDrawsAlone) {
+  const TemporaryFolder folder;
+  const ExperimentCase both = SmallExperiment(folder, kSampled).cases[0];
+  ExperimentCase one = both;
+  one.sample.erase(one.sample.begin());
+  EXPECT_EQ(DrawSample(both, 3, 17)[1], DrawSample(one, 3, 17)[0]);
+}
+
+TEST(ExperimentTest, TrialsThatSeeTheSameStandInOneGroup) {
+  const TemporaryFolder folder;
+  const auto trials = ExpandExperiment(SmallExperiment(
+      folder,
+      "name: grid\nseed: 1\nrepetitions: 2\ncases:\n  - name: c\n    scene: scene.yaml\n"
+      "    grasp: pinch\n    variations: {physics.impratio: [5, 10], objects.0.mass: [0.1, 0.2]}\n"
+      "  - {name: d, scene: scene.yaml, grasp: pinch, set: {demonstrator.speed: 0.4}}\n"));
+  ASSERT_EQ(trials.size(), 10u);
+  std::map<std::uint64_t, int> groups;
+  for (const PlannedTrial& trial : trials) ++groups[trial.group];
+  EXPECT_EQ(groups.size(), 4u);  // two repetitions of each case
+  EXPECT_EQ(groups[trials[0].group], 4);
 }
 
 TEST(ExperimentTest, OpenHandStandsBesideEachTrialWithTheSameDraws) {
