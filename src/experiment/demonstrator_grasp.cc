@@ -26,22 +26,23 @@ Eigen::Matrix3d HandAxes(const Eigen::Vector3d& x, const Eigen::Vector3d& z) {
 }
 
 TypePrior PriorOf(const DemonstratorHand& hand, const std::string& type, const Shape& shape,
-                  bool from_side) {
+                  bool from_above) {
   const FingerAngles curled{0, 0.75, 1.0, 0.5};
   const Eigen::Vector3d X = Eigen::Vector3d::UnitX(), Y = Eigen::Vector3d::UnitY(),
                         Z = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d down = from_above ? -Z : -X;  // where the fingers point
   const double s = hand.scale();
   TypePrior prior;
   if (type == "pinch") {
     prior.q =
         PostureOf(hand.tree, {1.1, 0.0, 0.3, 0.3}, {{{0, 0.8, 0.6, 0.3}, curled, curled, curled}});
-    prior.R_OH = HandAxes(from_side ? -X : -Z, Y);
+    prior.R_OH = HandAxes(down, Y);
     prior.p_HO = s * Eigen::Vector3d(0.10, 0.03, -0.06);
   } else if (type == "tripod") {
     prior.q = PostureOf(hand.tree, {1.2, 0.0, 0.3, 0.3},
                         {{{0.05, 0.8, 0.6, 0.3}, {-0.05, 0.8, 0.6, 0.3}, curled, curled}});
     // Turned so that a face of a box lies between thumb and fingers.
-    prior.R_OH = Eigen::AngleAxisd(0.2, Z) * HandAxes(from_side ? -X : -Z, Y);
+    prior.R_OH = Eigen::AngleAxisd(0.2, Z) * HandAxes(down, Y);
     prior.p_HO = s * Eigen::Vector3d(0.10, 0.02, -0.06);
   } else if (type == "power") {
     const FingerAngles wrapped{0, 0.8, 0.9, 0.5};
@@ -53,7 +54,7 @@ TypePrior PriorOf(const DemonstratorHand& hand, const std::string& type, const S
     const FingerAngles fist{0, 0.8, 1.3, 0.6};
     prior.q =
         PostureOf(hand.tree, {0.5, 0.1, 0.3, 0.3}, {{{0.1, 0.7, 0.9, 0.5}, fist, fist, fist}});
-    prior.R_OH = HandAxes(-X, Y);
+    prior.R_OH = HandAxes(down, Y);
     prior.p_HO = s * Eigen::Vector3d(0.10, 0.045, -0.05);
   }
   return prior;
@@ -68,7 +69,7 @@ class HeldProblem {
         type_(type),
         shape_(shape),
         style_(style),
-        prior_(PriorOf(hand, type, shape, style.from_side)),
+        prior_(PriorOf(hand, type, shape, ComesFromAbove(type, style.approach))),
         involved_(InvolvedFingers(type)) {
     prior_.R_OH = prior_.R_OH * Eigen::AngleAxisd(style.pitch, Eigen::Vector3d::UnitY()) *
                   Eigen::AngleAxisd(style.roll, Eigen::Vector3d::UnitX());
@@ -159,8 +160,7 @@ class HeldProblem {
       }
     } else {
       // Fingers that come from the side lie above each other, others beside each other.
-      const bool above_each_other = type_ == "power" || style_.from_side;
-      const double fingers = above_each_other ? 0.1 * kHeight : kHeight;
+      const double fingers = ComesFromAbove(type_, style_.approach) ? kHeight : 0.1 * kHeight;
       for (int f = 0; f < kNumFingers; ++f) {
         if (involved_[f]) Add((tips[f].z() - style_.height) * (f == kThumb ? kHeight : fingers));
       }
@@ -226,6 +226,14 @@ class HeldProblem {
 };
 
 }  // namespace
+
+bool ComesFromAbove(const std::string& type, const std::string& approach) {
+  ThrowUnless(approach == "usual" || approach == "above" || approach == "side",
+              "there is no approach '{}'; expected usual, above or side", approach);
+  ThrowUnless(type != "power" || approach != "above",
+              "a power grasp is shown from the side only, not from above");
+  return approach == "above" || (approach == "usual" && (type == "pinch" || type == "tripod"));
+}
 
 HeldPosture SolveHeldPosture(const DemonstratorHand& hand, const std::string& type,
                              const Shape& shape, const GraspStyle& style) {

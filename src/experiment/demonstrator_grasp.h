@@ -13,12 +13,17 @@
 
 namespace springgrasp {
 
+// Whether fingers of that type come from above, or level from the side. Throws Error for an unknown
+// approach, or for a power grasp from above.
+bool ComesFromAbove(const std::string& type, const std::string& approach);
+
 // What varies between two people (or two tries).
 struct GraspStyle {
-  double height = 0;       // m, of the contacts above the object's middle
-  double pitch = 0;        // rad, fingers up (positive) from the type's usual direction
-  double roll = 0;         // rad, about the fingers' direction
-  bool from_side = false;  // pinch, tripod: level instead of from above
+  double height = 0;  // m, of the contacts above the object's middle
+  double pitch = 0;   // rad, fingers up (positive) from the type's usual direction
+  double roll = 0;    // rad, about the fingers' direction
+  // usual: pinch and tripod from above, power and lateral from the side
+  std::string approach = "usual";  // usual | above | side
 };
 
 struct HeldPosture {

@@ -43,8 +43,8 @@ struct Approach {
   Eigen::Vector3d from, bow, turn;
 };
 
-Approach ApproachOf(const std::string& type, bool from_side) {
-  if ((type == "pinch" || type == "tripod") && !from_side) {
+Approach ApproachOf(const std::string& type, bool from_above) {
+  if (from_above) {
     // From the right and behind, over the object, the last part from above.
     return {{0.9, 0.1, 0.25}, {0, 0, 0.16}, {0.0, -0.1, -0.25}};
   }
@@ -112,7 +112,7 @@ Eigen::VectorXd StartPosture(const DemonstratorHand& hand, const HeldPosture& he
   Shape smaller = options.shape;
   smaller.size *= kSmaller;
   GraspStyle style;
-  style.from_side = options.approach == "side";
+  style.approach = options.approach;
   return SolveHeldPosture(hand, options.type, smaller, style).q;
 }
 
@@ -178,14 +178,15 @@ double PathPenetration(const DemonstratorHand& hand, const Shape& shape,
 HandMotion SynthesiseGrasp(const DemonstratorHand& hand, const SynthesiseOptions& options,
                            RandomEngine& engine) {
   Style style = DrawStyle(engine);
-  style.grasp.from_side = options.approach == "side";
+  style.grasp.approach = options.approach;
   const HeldPosture held = SolveHeldPosture(hand, options.type, options.shape, style.grasp);
   ThrowUnless(held.worst_gap < kMaxGap && held.worst_penetration < kMaxPenetration,
               "a hand of {:.0f} mm cannot hold {} by a {} grasp (fingertips {:.0f} mm off)",
               1000 * hand.size.length, FormatShape(options.shape), options.type,
               1000 * std::max(held.worst_gap, held.worst_penetration));
 
-  const Approach approach = ApproachOf(options.type, style.grasp.from_side);
+  const Approach approach =
+      ApproachOf(options.type, ComesFromAbove(options.type, options.approach));
   HandMotion motion;
   motion.source = "synthesised " + options.type;
   motion.type = options.type;

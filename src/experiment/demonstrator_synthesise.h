@@ -13,7 +13,7 @@ namespace springgrasp {
 struct SynthesiseOptions {
   std::string type = "pinch";      // pinch | tripod | power | lateral
   Shape shape;                     // of the object
-  std::string approach = "usual";  // usual | side: pinch and tripod level, as a power grasp
+  std::string approach = "usual";  // usual | side | above, see GraspStyle
   double rate = 100;               // Hz
   double hold = 0.3;               // s at rest after the closing
 };

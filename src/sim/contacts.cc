@@ -39,7 +39,9 @@ GeomRole RoleOfBody(const mjModel& model, int body) {
   if (role.part == GeomPart::kOther) MatchFinger(name, role);
   if (role.part != GeomPart::kOther) return role;
   if (name == "table") return {GeomPart::kTable, -1, -1};
-  if (EndsWith(name, "_ring") || EndsWith(name, "_pedestal")) return {GeomPart::kRing, -1, -1};
+  for (const char* seat : {"_ring", "_pedestal", "_slot"}) {
+    if (EndsWith(name, seat)) return {GeomPart::kRing, -1, -1};
+  }
   if (StartsWith(name, "hand_")) return {GeomPart::kPalm, -1, -1};
   if (StartsWith(name, "arm_")) return {GeomPart::kArm, -1, -1};
   return role;

@@ -57,6 +57,7 @@ struct SceneObject {
   double ring_height = 0;  // m, from the table to the ring's bottom (a thin stand)
   // Width, depth and height of a fixed block on the table on which it stands (m); zero: none.
   Eigen::Vector3d pedestal = Eigen::Vector3d::Zero();
+  double slot = 0;  // m, depth of a fixed slot that holds an upright plate (a box); 0: none
   Eigen::Vector3d colour{0.8, 0.25, 0.2};  // red, green, blue, 0..1
   SceneBelief believed;
 };
@@ -86,7 +87,7 @@ struct SceneOcclusion {
 struct SceneDemonstrator {
   std::string kind = "synthesised";  // synthesised | recorded
   std::string type = "pinch";        // pinch | tripod | power | lateral
-  std::string approach = "usual";    // synthesised pinch, tripod: usual (from above) | side
+  std::string approach = "usual";    // synthesised: usual | side | above (GraspStyle)
   std::string file;                  // recorded: demonstration CSV
   std::optional<Shape> object;       // the object shown; absent: shape of the scene's first
   bool object_visible = true;        // the object is in the picture

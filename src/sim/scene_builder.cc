@@ -158,6 +158,7 @@ std::string BuildMjcf(const Scene& scene, const BuildOptions& options) {
     for (int i = 0; i < static_cast<int>(scene.objects.size()); ++i) {
       if (options.with_table) AddRing(scene, i, root);
       if (options.with_table) AddPedestal(scene, i, root);
+      if (options.with_table) AddSlot(scene, i, root);
       AddObject(scene, i, document);
     }
   }

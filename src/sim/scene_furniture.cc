@@ -257,6 +257,29 @@ void AddPedestal(const Scene& scene, int object, XmlElement* root) {
   SetContact(block, o.friction, scene.physics, 0);
 }
 
+void AddSlot(const Scene& scene, int object, XmlElement* root) {
+  constexpr double kJaw = 0.008, kPlay = 0.0004;  // m: thickness of a jaw, room beside the plate
+  const SceneObject& o = scene.objects.at(object);
+  if (o.slot <= 0 || !o.shape) return;
+  const Eigen::Vector3d p_WO = ObjectStartPose(scene, object).translation();
+  const double bottom = scene.table.height + o.pedestal.z();
+  const int thin = o.shape->size.x() < o.shape->size.y() ? 0 : 1;
+  XmlElement* body = Add(ChildOf(root, "worldbody"), "body", o.name + "_slot");
+  SetPose(body, YawPose(p_WO.x(), p_WO.y(), bottom + o.slot / 2, o.yaw));
+  Eigen::Vector3d half(0.25 * o.shape->size.x(), 0.25 * o.shape->size.y(), o.slot / 2);
+  half[thin] = kJaw / 2;
+  for (const int side : {-1, 1}) {
+    XmlElement* jaw = Add(body, "geom", fmt::format("{}_slot_{}", o.name, side < 0 ? 0 : 1));
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    middle[thin] = side * (o.shape->size[thin] / 2 + kPlay + kJaw / 2);
+    Set(jaw, "type", "box");
+    Set(jaw, "size", Text(half));
+    Set(jaw, "pos", Text(middle));
+    SetColour(jaw, {0.25, 0.27, 0.3});
+    SetContact(jaw, o.friction, scene.physics, 0);
+  }
+}
+
 void AddObject(const Scene& scene, int object, XmlDocument& document) {
   const SceneObject& o = scene.objects.at(object);
   const Pose X_WO = ObjectStartPose(scene, object);

@@ -15,6 +15,9 @@ void AddSurroundings(const Scene& scene, XmlElement* root);
 void AddTable(const Scene& scene, XmlElement* root);
 // Fixed body `<object>_pedestal` under an object that stands on one; nothing for others.
 void AddPedestal(const Scene& scene, int object, XmlElement* root);
+// Fixed body `<object>_slot`: two jaws beside the thinner side of an upright plate; nothing for
+// others.
+void AddSlot(const Scene& scene, int object, XmlElement* root);
 // Fixed body `<object>_ring` under an object that is on_ring; nothing for others.
 void AddRing(const Scene& scene, int object, XmlElement* root);
 // Free body `<object>` with joint `<object>_free`.

@@ -68,6 +68,8 @@ void ReadFacts(SceneObject& object, const std::string& where) {
   }
 }
 
+constexpr double kThickest = 0.03;  // m, of a plate in a slot
+
 SceneObject ReadObject(YamlReader& yaml, const std::string& scene) {
   SceneObject o;
   yaml.Read("name", o.name);
@@ -102,6 +104,13 @@ SceneObject ReadObject(YamlReader& yaml, const std::string& scene) {
   ThrowUnless(!(yaml.Has("pedestal") && (o.on_ring || !o.resting)),
               "{}: a pedestal is for objects that stand on it: no on_ring, pose of two numbers",
               yaml.Where("pedestal"));
+  yaml.Read("slot", o.slot, {0.002, 0.2});
+  ThrowUnless(
+      !yaml.Has("slot") ||
+          (o.resting && o.model.empty() && o.shape && o.shape->kind == Shape::Kind::kBox &&
+           std::min(o.shape->size.x(), o.shape->size.y()) <= kThickest),
+      "{}: a slot is for upright plates: boxes of at most {} m in x or y, pose of two numbers",
+      yaml.Where("slot"), kThickest);
   yaml.Read("colour", o.colour, kFraction);
   YamlReader believed = yaml.Child("believed");
   believed.Read("position", o.believed.position, {-1, 1});

@@ -81,7 +81,7 @@ std::optional<Shape> ReadSceneShape(YamlReader& yaml, const std::string& key) {
 void ReadDemonstrator(YamlReader yaml, const std::string& scene, SceneDemonstrator& d) {
   yaml.Read("kind", d.kind, {"synthesised", "recorded"});
   yaml.Read("type", d.type, {"pinch", "tripod", "power", "lateral"});
-  yaml.Read("approach", d.approach, {"usual", "side"});
+  yaml.Read("approach", d.approach, {"usual", "side", "above"});
   yaml.Read("file", d.file);
   if (d.kind == "recorded") {
     yaml.Require("file");
