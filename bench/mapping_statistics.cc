@@ -1,4 +1,4 @@
-// The human hand's inverse kinematics and the mapping to the robot's fingers (Eq. 14-16) along
+// The human hand's inverse kinematics and the mapping to the robot's fingers (Eq. (14)-(16)) along
 // generated grasps of all four types.
 //   mapping_statistics [TRAJECTORIES] [EVERY] [FIRST]   (1000, 10, 0: NLopt is asked every tenth
 //                                                        frame; FIRST: the number of the first one)

@@ -1,4 +1,4 @@
-// From a grasp of the library to the robot's commands: contacts, hand mapping (Eq. 14-16), arm.
+// From a grasp of the library to the robot's commands: contacts, hand mapping (Eq. (14)-(16)), arm.
 #pragma once
 
 #include <optional>

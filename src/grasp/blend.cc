@@ -174,12 +174,14 @@ Grasp BlendGrasps(const Grasp& from, const Grasp& to, double s, const Shape& sha
     }
     if (a.involved[i] && b.involved[i]) {
       grasp.opening[i] = Mix(a.opening[i], b.opening[i], s);
+      grasp.opening_bend[i] = Mix(a.opening_bend[i], b.opening_bend[i], s);
       grasp.bend[i] = Mix(a.bend[i], b.bend[i], s);
       grasp.lag[i] = Mix(a.lag[i], b.lag[i], s);
     } else if (grasp.involved[i]) {
       // Its share of the force, not its way, grows from nothing.
       const Grasp& taken = a.involved[i] ? a : b;
       grasp.opening[i] = taken.opening[i];
+      grasp.opening_bend[i] = taken.opening_bend[i];
       grasp.bend[i] = taken.bend[i];
       grasp.lag[i] = taken.lag[i];
     }

@@ -130,6 +130,7 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
     run.p_HC[i] = X_HO * contacts[i].p_OC;
     run.n_H[i] = X_HO.linear() * contacts[i].n_O;
     run.p_HF[i] = run.p_HC[i] + grasp.offset[i];
+    run.opening_bend[i] = grasp.opening_bend[i];
     run.bend[i] = grasp.bend[i];
     if (options.object_centre) {
       run.p_HF[i] = X_HO * learned[i].p_OC + grasp.offset[i];

@@ -17,8 +17,8 @@ using Eigen::VectorXd;
 
 // Of T, over which the central force changes its sign. Profile paper: spring-model note, section 6.
 // Profile human: the hand comes to rest at its widest, as people's do; chosen on tracked
-// demonstrations of the four types, seeds 1 and 2.
-constexpr double kBlend = 0.05, kCalmBlend = 0.2;
+// demonstrations of the four types, seeds 1 to 6.
+constexpr double kBlend = 0.05, kCalmBlend = 0.3;
 
 }  // namespace
 
@@ -70,6 +70,7 @@ SpringSystem MakeSystem(const FingerRun& run, const std::vector<int>& fingers) {
   }
   system.anchors = SystemPoints(run, fingers, run.p_HC);
   system.normals = OpeningDirections(run, fingers);
+  system.opening_bend = SystemPoints(run, fingers, run.opening_bend, true);
   system.bend = SystemPoints(run, fingers, run.bend, true);
   for (int n = 0; n < count; ++n) {
     const int finger = fingers[static_cast<std::size_t>(n)];

@@ -35,7 +35,10 @@ struct FingerRun {
   // Preshape of the involved fingers from their contacts in H, m; all zero: along n_H.
   Fingertips opening = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
                         Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  // Of the ways back to the contacts, in H, 1/m (spring_system.h).
+  // Of the ways out and of those back to the contacts, in H, 1/m (spring_system.h).
+  Fingertips opening_bend = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                             Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                             Eigen::Vector3d::Zero()};
   Fingertips bend = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
                      Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   PerFinger<double> lag = {};      // s, by which a finger closes later than t_switch
@@ -55,7 +58,7 @@ Eigen::MatrixXd SystemPoints(const FingerRun& run, const std::vector<int>& finge
 
 // Eq. (7) on the listed fingers with the run's gains, from |a| of H's origin (m/s^2) at even steps.
 // The sign is blended around the switch, since |a| is not zero there on curved reaches: over 0.05
-// T, with `hold` over 0.2 T.
+// T, with `hold` over 0.3 T.
 CentralForce MakeRunForce(const FingerRun& run, const std::vector<int>& fingers,
                           const std::vector<double>& acceleration, double dt);
 

@@ -85,6 +85,10 @@ struct Grasp {
                                         Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
                                         Eigen::Vector3d::Zero()};
 
+  // The bend of the ways out in H, 1/m (spring_system.h). Profile human.
+  PerFinger<Eigen::Vector3d> opening_bend = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                             Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                             Eigen::Vector3d::Zero()};
   // How the involved fingers come back: the bend of their ways in H, 1/m (spring_system.h), and how
   // much later than t_switch each closes, fraction of T. Profile human.
   PerFinger<Eigen::Vector3d> bend = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),

@@ -155,6 +155,10 @@ void FormatFingers(std::string& out, const Grasp& grasp) {
     if (grasp.involved[i] && !grasp.opening[i].isZero(0)) {
       fmt::format_to(to, "    opening: {}  # from the contact in H, m\n", List(grasp.opening[i]));
     }
+    if (grasp.involved[i] && !grasp.opening_bend[i].isZero(0)) {
+      fmt::format_to(to, "    opening_bend: {}  # of that way, in H, 1/m\n",
+                     List(grasp.opening_bend[i]));
+    }
     if (grasp.involved[i] && !grasp.bend[i].isZero(0)) {
       fmt::format_to(to, "    bend: {}  # of the way back, in H, 1/m\n", List(grasp.bend[i]));
     }
@@ -187,6 +191,7 @@ void ParseFingers(YamlReader& yaml, Grasp& grasp) {
       item.Read("share", grasp.share[i], Bounds{0, 1});
       item.Read("clearance", grasp.clearance[i], Bounds{0, 1});
       item.Read("opening", grasp.opening[i], Bounds{-2, 2});
+      item.Read("opening_bend", grasp.opening_bend[i], Bounds{-1e3, 1e3});
       item.Read("bend", grasp.bend[i], Bounds{-1e3, 1e3});
       item.Read("lag", grasp.lag[i], Bounds{-1, 1});
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "demonstration/steady_hand.h"
 #include "grasp/aperture.h"
 #include "grasp/generate_fingers.h"
 #include "grasp/grasp_frame.h"
@@ -171,11 +172,11 @@ Pose DefaultGraspInHand() {
   return GraspFrame(tips, InvolvedFingers("pinch"), Vector3d::Zero());
 }
 
-Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options) {
+Grasp LearnGrasp(const Demonstration& shown, const LearnOptions& options) {
   Grasp grasp;
   grasp.type = options.type;
   grasp.name = options.name.empty() ? options.type : options.name;
-  grasp.source = demonstration.source;
+  grasp.source = shown.source;
   grasp.profile = options.profile;
   grasp.dim = options.dim;
   grasp.hand_length = options.hand_length;
@@ -187,6 +188,7 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
       "profile is '{}', expected human, paper or unforced", options.profile);
 
   // The hand's movement, and where in it the reach lies.
+  const Demonstration demonstration = WithSteadyHand(shown, grasp.involved);
   HandTrack track = MakeHandTrack(demonstration);
   grasp.observed = track.observed;
   PerFinger<bool> closing = grasp.involved;
@@ -326,6 +328,7 @@ Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options
   grasp.quality.aperture_time = static_cast<double>(widest) * track.dt / grasp.scales.T;
   if (fit.human) {
     grasp.opening = Preshape(fit, widest);
+    fit.run.opening_bend = grasp.opening_bend = OpeningBend(fit, widest, grasp.opening);
     fit.run.opening = grasp.opening;
     fit.run.bend = grasp.bend = ClosingBend(fit);
     fit.run.lag = ClosingLag(fit);

@@ -1,5 +1,6 @@
 #include "grasp/learn_preshape.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -34,14 +35,19 @@ std::size_t WidestInstant(const FitProblem& fit) {
   return widest;
 }
 
-Fingertips Preshape(const FitProblem& fit, std::size_t widest) {
+namespace {
+
+constexpr double kLeast = 0.01;    // m, of a way that tells its shape and its time
+constexpr double kMostBend = 1.0;  // bend times way: a quarter circle has 0.7
+
+// The involved tips from their contacts while the hand opens, step by step, less what the auxiliary
+// springs alone leave of the start.
+std::vector<Fingertips> OpeningWays(const FitProblem& fit, std::size_t widest) {
   constexpr double kAfter = 0.08;  // of T: so far beyond the widest instant the hand stays open
-  constexpr int kRounds = 5;
   const double steps_per_T = fit.run.T / fit.dt;
   const double damped = fit.rule.omega_T * fit.rule.zeta;
   const double split =
       fit.rule.omega_T * std::sqrt(std::max(1e-6, fit.rule.zeta * fit.rule.zeta - 1));
-  // What of the tips' places the auxiliary springs alone do not explain, step by step.
   std::vector<Fingertips> ways;
   const auto end = std::min(
       fit.p_HF.size(), widest + static_cast<std::size_t>(std::lround(kAfter * steps_per_T)) + 1);
@@ -57,6 +63,14 @@ Fingertips Preshape(const FitProblem& fit, std::size_t widest) {
     }
     ways.push_back(way);
   }
+  return ways;
+}
+
+}  // namespace
+
+Fingertips Preshape(const FitProblem& fit, std::size_t widest) {
+  constexpr int kRounds = 5;
+  const std::vector<Fingertips> ways = OpeningWays(fit, widest);
   // Their first principal component: how far the whole hand is along `opening` at every step, and
   // the opening that explains all steps best, by turns.
   Fingertips opening = ways[std::min(widest, ways.size() - 1)];
@@ -88,10 +102,43 @@ Fingertips Preshape(const FitProblem& fit, std::size_t widest) {
   return opening;
 }
 
-namespace {
+Fingertips OpeningBend(const FitProblem& fit, std::size_t widest, Fingertips& opening) {
+  Fingertips bend;
+  bend.fill(Vector3d::Zero());
+  const std::vector<Fingertips> ways = OpeningWays(fit, widest);
+  for (int i = 0; i < kNumFingers; ++i) {
+    const double length = opening[i].norm();
+    if (!fit.run.involved[i] || !fit.observed[i] || length < kLeast) continue;
+    const Vector3d chord = opening[i] / length;
+    const Vector3d start = fit.run.p_HF[i] - fit.run.p_HC[i];
+    double first = chord.dot(start), last = first;
+    for (const Fingertips& tips : ways) last = std::max(last, chord.dot(tips[i] + start));
+    if (last - first < kLeast) continue;
+    // Across the chord the way is w = A + bend / 2 (x - middle)^2 where it is x along it.
+    const double middle = 0.5 * (first + last);
+    double square = 0, mean = 0;
+    Vector3d w_mean = Vector3d::Zero(), w_square = Vector3d::Zero();
+    const double part = 1 / static_cast<double>(ways.size());
+    for (const Fingertips& tips : ways) {
+      const Vector3d y = tips[i] + start;
+      const double x = chord.dot(y), x2 = 0.5 * (x - middle) * (x - middle);
+      const Vector3d w = y - x * chord;
+      mean += part * x2;
+      square += part * x2 * x2;
+      w_mean += part * w;
+      w_square += part * x2 * w;
+    }
+    const double variance = square - mean * mean;
+    if (variance <= 1e-9 * square) continue;
+    bend[i] = (w_square - mean * w_mean) / variance;
+    const double limit = kMostBend / (last - first);
+    if (bend[i].norm() > limit) bend[i] *= limit / bend[i].norm();
+    opening[i] -= length * middle * bend[i];
+  }
+  return bend;
+}
 
-constexpr double kLeast = 0.01;    // m, of a way back that tells its shape and its time
-constexpr double kMostBend = 1.0;  // bend times way: a quarter circle has 0.7
+namespace {
 
 // The way of finger i back to its contact.
 struct Closing {

@@ -17,6 +17,11 @@ std::size_t WidestInstant(const FitProblem& fit);
 // leave of the start. From the contacts in H, m.
 Fingertips Preshape(const FitProblem& fit, std::size_t widest);
 
+// How these ways are bent, 1/m: the parabola through each one's path up to soon after the widest
+// instant, parallel to its chord `opening` in the middle; `opening` becomes the tangent beside the
+// contact. Straight for a finger that opens by less than 10 mm.
+Fingertips OpeningBend(const FitProblem& fit, std::size_t widest, Fingertips& opening);
+
 // How the involved fingers' ways back to their contacts are bent (spring_system.h), 1/m: the
 // parabola through each one's path from where it is farthest on. Straight where that is less than
 // 10 mm away.

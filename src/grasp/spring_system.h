@@ -22,6 +22,8 @@
 // not open along contact normals (a finger unfolds across them). There f < 0 pushes every finger
 // towards its place in the opened hand, in proportion to its way there, and f > 0 back in
 // proportion to its distance s_i / (mean s), along xc_i - |xc_i|^2 bend_i: straight, or on an arc.
+// The ways out may be arcs too: along n_i + (o_i.y) b_i with b_i of opening_bend and o_i, the part
+// of n_i orthogonal to it, the chord.
 // Both make the fingers arrive together, which is what Eq. (4) is for.
 #pragma once
 
@@ -59,6 +61,7 @@ struct SpringSystem {
   // vectors whose lengths share f among the fingers (kBalanced). Where L > 0 the radius is used
   // instead, where a column is zero u_i.
   Eigen::MatrixXd normals;
+  Eigen::MatrixXd opening_bend;       // dim x N, 1/m, of the ways along `normals` (kOutward)
   Eigen::MatrixXd bend;               // dim x N, 1/m, of the ways back to the contacts (kBalanced)
   double kc = 1, dc = 0.3;            // auxiliary spring N/m and damper N s/m, of every finger
   double d0 = 0;                      // ambient damper, N s/m
@@ -86,7 +89,7 @@ std::vector<std::pair<int, int>> SpringTopology(std::string_view name);
 // Every intermediate quantity of one evaluation.
 struct SpringTerms {
   Eigen::MatrixXd x, xdot;    // dim x springs: Eq. (2) and Eq. (1), m and m/s
-  Eigen::MatrixXd xc, u;      // dim x N: Eq. (3), (6), m; direction of the central force
+  Eigen::MatrixXd xc, u;      // dim x N: Eq. (3), Eq. (6), m; direction of the central force
   Eigen::MatrixXd direction;  // dim x N: u, or the outward direction while f < 0
   Eigen::VectorXd s;          // N, m
   Eigen::VectorXd f;          // N: central force given for each finger, N

@@ -84,7 +84,7 @@ class MappingProblem {
     return Valves(q).cwiseMax(lower).cwiseMin(upper);
   }
 
-  // S' of Eq. 15 with our own rows: the sum of squares |r|^2; A = J'J and g = J'r where wanted.
+  // S' of Eq. (15) with our own rows: the sum of squares |r|^2; A = J'J and g = J'r where wanted.
   double Evaluate(const ValveAngles& x, ValveMatrix* A, ValveAngles* g) {
     Joints(x);
     hand_.Move(x);

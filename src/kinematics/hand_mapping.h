@@ -1,5 +1,5 @@
 // Robot finger joints from a human hand: the similarity of joint angles and fingertip position,
-// minimised by Levenberg-Marquardt under joint bounds (Eq. 14-16).
+// minimised by Levenberg-Marquardt under joint bounds (Eq. (14)-(16)).
 #pragma once
 
 #include <Eigen/Core>
@@ -17,13 +17,13 @@ namespace springgrasp {
 struct MappingTarget {
   PerFinger<Eigen::Vector2d> sigma;  // wanted j0, j1, rad (already clipped to the joint ranges)
   PerFinger<Eigen::Vector3d> p_HF;   // wanted tips in the robot's H, m
-  PerFinger<double> lambda;          // weight of the position term (Eq. 14: 1)
+  PerFinger<double> lambda;          // weight of the position term (Eq. (14): 1)
   double opposition = 0;             // wanted angle of a thumb that can turn, rad
 };
 
 // Residual rows (n = 2 joints per finger):
-//   2 per finger  (sigma_wanted - sigma) / (pi sqrt(n))                             Eq. 14
-//   3 per finger  sqrt(lambda) (p_wanted - p) / (2 l_finger sqrt(3))                Eq. 14
+//   2 per finger  (sigma_wanted - sigma) / (pi sqrt(n))                             Eq. (14)
+//   3 per finger  sqrt(lambda) (p_wanted - p) / (2 l_finger sqrt(3))                Eq. (14)
 //   palm          palm_weight (q_palm - palm_wanted) / pi                           ours
 //   opposition    (q - opposition) / (pi sqrt(n)), if the hand has the joint        ours
 //   every joint   smoothness (q - q_previous) / pi, if warm-started                 ours, off
@@ -34,13 +34,13 @@ struct MappingOptions {
   double palm_weight = 1;
   double palm_wanted = 0;  // rad
   double smoothness = 0;
-  double max_step = 0;  // rad, of any joint from `previous` (bounds, as Eq. 16); 0: no limit
+  double max_step = 0;  // rad, of any joint from `previous` (bounds, as Eq. (16)); 0: no limit
   int max_iterations = 60;
 };
 
 struct MappingResult {
   Eigen::VectorXd q;                 // every joint, within its range, rad
-  double cost = 0;                   // S' of Eq. 15 summed over fingers, plus our own rows
+  double cost = 0;                   // S' of Eq. (15) summed over fingers, plus our own rows
   PerFinger<double> tip_error = {};  // m
 };
 

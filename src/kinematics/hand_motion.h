@@ -18,7 +18,7 @@ namespace springgrasp {
 struct HandMotionRequest {
   double dt = 0.005;                             // s
   double T = 1;                                  // s, end of the reach: contact
-  double t_switch = 0.5;                         // s, closing begins (Eq. 7)
+  double t_switch = 0.5;                         // s, closing begins (Eq. (7))
   std::vector<Eigen::VectorXd> q_human;  // MMM hand, rad (SolveHandMotion)
   // Where the robot's tips belong when they near the object, in the ROBOT's H, m: the human ones
   // about the object as the robot holds it, X_HO(robot) X_OH(human, T) p_HF(t).
@@ -30,7 +30,7 @@ struct HandMotionRequest {
 
 struct HandMotionOptions {
   double clearance = 0.010;      // m, of the open hand from the object before it closes
-  double lambda_contact = 1000;  // position weight at contact (Eq. 14: 1)
+  double lambda_contact = 1000;  // position weight at contact (Eq. (14): 1)
   double closing = 0.25;         // last part of T in which the clearance may fall to zero
   double max_speed = 8;          // rad/s, of a finger joint (3 degrees in 5 ms would be 10.5)
   MappingOptions mapping;

@@ -28,7 +28,7 @@ HumanHand MakeHumanHand(KinematicTree tree);
 // The same hand with all lengths multiplied by `factor`.
 HumanHand ScaledHand(const HumanHand& hand, double factor);
 
-// Flexion angles that Eq. 14 compares, rad. Thumb: CMC flexion + MCP (from straight out of the
+// Flexion angles that Eq. (14) compares, rad. Thumb: CMC flexion + MCP (from straight out of the
 // palm plane's 45 degrees), IP. Fingers: MCP, PIP + DIP.
 struct FlexionAngles {
   double proximal = 0;

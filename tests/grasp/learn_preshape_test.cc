@@ -54,6 +54,24 @@ TEST(WidestInstant, IsOneThatWasMeasured) {
   EXPECT_GT(std::abs(static_cast<double>(widest) - 50), 9);
 }
 
+// The index opens on a parabola; beside the contact its way is the tangent there.
+TEST(OpeningBend, IsThatOfTheArcOnWhichAFingerOpens) {
+  const Vector3d index(0.04, 0, 0), bend(0, 8, -6);
+  FitProblem fit = Opening(Vector3d(-0.03, 0, 0), index, 0);
+  for (Fingertips& tips : fit.p_HF) {
+    const double x = (tips[kIndex] - fit.run.p_HC[kIndex]).x();
+    tips[kIndex] += 0.5 * x * (x - 0.04) * bend;
+  }
+  const std::size_t widest = WidestInstant(fit);
+  Fingertips opening = Preshape(fit, widest);
+  const Fingertips found = OpeningBend(fit, widest, opening);
+  EXPECT_LT((found[kIndex] - bend).norm(), 0.1 * bend.norm());
+  const Vector3d tangent = (Vector3d::UnitX() - 0.02 * bend).normalized();
+  EXPECT_GT(opening[kIndex].normalized().dot(tangent), std::cos(0.05));
+  EXPECT_LT(found[kThumb].norm(), 1e-6);
+  EXPECT_EQ(found[kRing], Vector3d::Zero());
+}
+
 // The index comes back on a parabola, and later than the thumb.
 TEST(ClosingBend, IsThatOfTheArcOnWhichAFingerComesBack) {
   const Vector3d index(0.04, 0, 0), bend(0, 3, -2);

@@ -268,6 +268,7 @@ TEST_P(SensitivitiesTest, AgreeWithCentralDifferences) {
     system.ratio = ForceRatio::kBalanced;
     system.opening = OpeningDirection::kOutward;
     system.normals = RandomPoints(engine, 2, 5, 1.0);
+    system.opening_bend = RandomPoints(engine, 2, 5, 4.0);
     system.bend = RandomPoints(engine, 2, 5, 4.0);
     force.lag = 0.05 * RandomPoints(engine, 5, 1, 1.0);
   }

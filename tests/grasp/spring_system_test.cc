@@ -52,6 +52,8 @@ SpringSystem Make(const Variant& variant, RandomEngine& engine) {
   system.rest_radius.setConstant(variant.radius);
   system.bend = RandomPoints(engine, variant.dim, 5, 8.0);
   system.bend.col(2).setZero();
+  system.opening_bend = RandomPoints(engine, variant.dim, 5, 8.0);
+  system.opening_bend.col(3).setZero();
   return system;
 }
 
@@ -118,6 +120,7 @@ TEST(SpringSystem, RotationAndTranslationCarryThrough) {
     moved.anchors = (R * system.anchors).colwise() + shift;
     moved.normals = R * system.normals;
     moved.bend = R * system.bend;
+    moved.opening_bend = R * system.opening_bend;
     const MatrixXd expected =
         R * Acceleration(system, p, v, variant.f).reshaped(variant.dim, 5).matrix();
     const MatrixXd p_moved = (R * p).colwise() + shift;
@@ -232,6 +235,30 @@ TEST(SpringSystem, BentWaysBackFollowTheirArc) {
       const Eigen::Vector3d tangent = (n - 2 * x * bend).normalized();
       EXPECT_LT((terms.direction.col(0).normalized() - tangent).norm(),
                 1.1 * std::pow(x * bend.norm(), 3));
+    }
+  }
+}
+
+// On the parabola w = bend / 2 (x - middle)^2 across the chord, as the preshape gives it.
+TEST(SpringSystem, BentWaysOutFollowTheirArc) {
+  RandomEngine engine = MakeStream(7, 0, "opening bend");
+  for (int draw = 0; draw < 20; ++draw) {
+    SpringSystem system = RandomSystem(engine, 3, "brace9");
+    system.ratio = ForceRatio::kBalanced;
+    system.opening = OpeningDirection::kOutward;
+    const Eigen::Vector3d chord = RandomPoints(engine, 3, 1, 1).normalized();
+    const Eigen::Vector3d other = RandomPoints(engine, 3, 1, 1);
+    const Eigen::Vector3d bend = 10 * chord.cross(other).normalized();
+    const double middle = Uniform(engine, -0.02, 0.02);
+    system.involved[0] = true;
+    system.opening_bend.col(0) = bend;
+    system.normals.col(0) = chord - middle * bend;
+    for (const double x : {-0.02, 0.01, 0.04}) {
+      MatrixXd p = system.anchors;
+      p.col(0) += x * chord + 0.5 * (x - middle) * (x - middle) * bend;
+      SpringTerms terms;
+      EvaluateSprings(system, p, MatrixXd::Zero(3, 5), -0.1, terms);
+      EXPECT_LT((terms.direction.col(0) - chord - (x - middle) * bend).norm(), 1e-12);
     }
   }
 }

@@ -1,4 +1,4 @@
-// Eq. 7 and its extensions.
+// Eq. (7) and its extensions.
 #include "motion/central_force.h"
 
 #include <gtest/gtest.h>
