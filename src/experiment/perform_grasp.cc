@@ -103,6 +103,14 @@ void RecordPerformance(const Performance& p, const std::string& type, const Perf
       v[fmt::format("load_share_{}", kFingerNames[f])] = window.LoadShare(f);
     }
     v["palm_normal_n"] = window.palm_normal;
+    for (int f = 0; f < kNumFingers; ++f) {
+      v[fmt::format("largest_force_{}_n", kFingerNames[f])] = p.largest_force[f];
+      if (p.reached <= Phase::kHold || p.force_target[f] == 0) continue;
+      v[fmt::format("force_target_{}_n", kFingerNames[f])] = p.force_target[f];
+      v[fmt::format("force_sensed_{}_n", kFingerNames[f])] = p.force_sensed[f];
+      v[fmt::format("force_hold_{}_n", kFingerNames[f])] = p.hold.normal[f];
+    }
+    v["regrips"] = p.regrips;
     const ContactCheck check = CheckContacts(type, window, options.shape, options.criteria);
     v["opposition_deg"] = check.opposition_deg;
     v["epsilon"] = check.epsilon;
