@@ -43,7 +43,7 @@ int Main(int argc, char** argv) {
         if (key.starts_with("arm_") || key == "regrips" || key.starts_with("grip_") ||
             key.starts_with("slip_") || key.starts_with("rotation_") ||
             (key.ends_with("_n") && (key.starts_with("force") || key.starts_with("largest"))) ||
-            key.starts_with("finger_"))
+            key.starts_with("finger_") || key.starts_with("be"))
           fmt::print(" {}={:.2f}", key, value);
       }
       fmt::print("\n");

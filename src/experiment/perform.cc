@@ -14,8 +14,10 @@
 namespace springgrasp {
 namespace {
 
-constexpr double kGravity = 9.81;     // m/s^2
-constexpr double kMinRise = 0.5;      // of the lift height, that the object must have risen
+constexpr double kGravity = 9.81;  // m/s^2
+constexpr double kMinRise = 0.5;   // of the lift height, that the object must have risen
+constexpr double kEnclosingShare = 0.65;
+constexpr double kLateReach = 0.8;    // of T, from where on the hand must be where it is wanted
 constexpr double kGripWindow = 0.25;  // s, to see whether a finger touches at the end of grip
 
 PerFinger<int> TipFrames(const KinematicTree& hand) {
@@ -38,10 +40,11 @@ GripTask Task(const GraspPlan& plan, const PerformOptions& options) {
   GripTask task;
   task.enclosing = plan.type == "power";
   task.involved = plan.involved;
-  task.max_force = options.max_finger_force;
-  task.force = std::max(task.enclosing ? grip.min_enclosing_force : grip.min_force,
-                        GripForceFor(plan.mass, plan.friction, grip.acceleration, grip.safety,
-                                     options.max_finger_force));
+  // The thumb of an enclosing hand bears what all others press, and the load.
+  task.max_force = (task.enclosing ? kEnclosingShare : 1) * options.max_finger_force;
+  task.force = std::max(
+      task.enclosing ? grip.min_enclosing_force : grip.min_force,
+      GripForceFor(plan.mass, plan.friction, grip.acceleration, grip.safety, task.max_force));
   return task;
 }
 
@@ -62,6 +65,7 @@ class Performer {
         criteria_(options.criteria),
         observer_(observer),
         tip_frames_(TipFrames(hand)),
+        nominal_hand_(robot.layout()),
         drives_(options.pneumatics, simulation.timestep(), options.actuation),
         grip_(BelievedHand(robot.layout(), options), hand, tip_frames_, Task(plan, options),
               options.grip.settings),
@@ -106,6 +110,8 @@ class Performer {
     hand_target.qdd = hand.qdd;
     hand_target.sensing_delay = options_.pneumatics.sensing_delay;
     command.valve_pressure = grip_.Control(state, hand_target, stage, dt);
+    WatchLimits(robot_, nominal_hand_, options_.pneumatics, state, target.q, hand.q, command, dt,
+                performance_.violations);
     command.valve_pressure = drives_.Step(command.valve_pressure, pressure);
     robot_.Write(command, simulation_);
     simulation_.Step();
@@ -157,6 +163,17 @@ class Performer {
     return target;
   }
 
+  // Of the reach at time t, between its samples.
+  Pose PlannedPose(double t) const {
+    const double s = std::clamp(t / plan_.dt, 0.0, static_cast<double>(plan_.X_WH.size() - 1));
+    const auto i = static_cast<std::size_t>(s);
+    const Pose& a = plan_.X_WH[i];
+    const Pose& b = plan_.X_WH[std::min(i + 1, plan_.X_WH.size() - 1)];
+    const double u = s - static_cast<double>(i);
+    return MakePose((1 - u) * a.translation() + u * b.translation(),
+                    Eigen::Quaterniond(a.linear()).slerp(u, Eigen::Quaterniond(b.linear())));
+  }
+
   HandReference StillAt(const HandVector& q) const {
     return {q, HandVector::Zero(q.size()), HandVector::Zero(q.size())};
   }
@@ -180,15 +197,16 @@ class Performer {
     const long steps = StepsFor(end);
     for (long i = 0; i < steps; ++i) {
       const double t = static_cast<double>(i) * simulation_.timestep();
-      const std::size_t k = std::min(plan_.arm.size() - 1, static_cast<std::size_t>(t / plan_.dt));
-      planned_ = plan_.X_WH[k];
+      planned_ = PlannedPose(t + simulation_.timestep());
       if (!Step(ArmReferenceAt(plan_.arm, plan_.dt, t), HandReferenceAt(plan_.hand, plan_.dt, t),
                 t < plan_.T ? GripStage::kFree : GripStage::kClosing, 0)) {
         return false;
       }
       const Pose X_WH = robot_.HandPose(simulation_);
       arm_sum += (X_WH.translation() - planned_.translation()).squaredNorm();
+      if (t > kLateReach * plan_.T) performance_.late_reach.Add(X_WH, planned_);
       if (t > plan_.T) continue;
+      const std::size_t k = std::min(plan_.arm.size() - 1, static_cast<std::size_t>(t / plan_.dt));
       for (int f = 0; f < kNumFingers; ++f) {
         if (!plan_.involved[f]) continue;
         finger_sum += (X_WH.inverse() * robot_.Fingertip(simulation_, f) -
@@ -246,6 +264,9 @@ class Performer {
 
   bool Hold() {
     Enter(Phase::kHold);
+    std::vector<Pose> X_WB;
+    ForwardKinematics(arm_, plan_.lift.back(), X_WB);
+    planned_ = FramePose(arm_, X_WB, arm_frame_);
     const double quiet = 0.5;  // s, let the lift die out before creep is measured
     Eigen::Vector3d p_HO_quiet = watch_.ObjectInHand().translation();
     for (long i = 0; i < StepsFor(criteria_.hold); ++i) {
@@ -257,6 +278,7 @@ class Performer {
       }
       if (!Step(Rest(plan_.lift.back()), StillAt(plan_.hand.back()), GripStage::kPressing, 1))
         return false;
+      performance_.held.Add(robot_.HandPose(simulation_), planned_);
     }
     performance_.creep = (watch_.ObjectInHand().translation() - p_HO_quiet).norm() /
                          std::max(0.1, criteria_.hold - quiet);
@@ -332,6 +354,7 @@ class Performer {
   const TrialCriteria& criteria_;
   const StepObserver& observer_;
   const PerFinger<int> tip_frames_;
+  const PneumaticHandModel nominal_hand_;
   PneumaticDrives drives_;
   GripController grip_;
   int arm_frame_ = 0;

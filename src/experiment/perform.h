@@ -1,6 +1,7 @@
 // PERFORM: one planned grasp in physics, phase by phase.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "control/grip_controller.h"
 #include "experiment/contact_window.h"
 #include "experiment/grasp_plan.h"
+#include "experiment/limit_watch.h"
 #include "experiment/phases.h"
 #include "experiment/verdict.h"
 #include "kinematics/kinematic_tree.h"
@@ -51,16 +53,28 @@ struct TrajectorySample {
   RobotCommand command;
 };
 
+// Of the hand frame H against its plan.
+struct PoseError {
+  double position = 0, rotation = 0;  // m, rad
+  void Add(const Pose& X, const Pose& planned) {
+    position = std::max(position, (X.translation() - planned.translation()).norm());
+    rotation = std::max(rotation, RotationDistance(Eigen::Quaterniond(X.linear()),
+                                                   Eigen::Quaterniond(planned.linear())));
+  }
+};
+
 struct Performance {
   std::vector<TrialEvent> events;  // what went wrong, unordered
   Phase reached = Phase::kSettle;
-  ContactWindow grip, hold, after;    // end of grip, last of hold, after the disturbances
-  double slip = 0, rotation = 0;      // m, rad: largest in the hand from grip to the end
-  double creep = 0;                   // m/s in hold
-  double shake_fraction = 0;          // smallest of three axes, achieved over commanded
-  double arm_error = 0;               // m, RMS of the hand frame against plan in the reach
-  double finger_error = 0;            // m, RMS of fingertips against plan in the reach
-  double end_error = 0;               // m, hand frame against plan at the end of the reach
+  ContactWindow grip, hold, after;  // end of grip, last of hold, after the disturbances
+  double slip = 0, rotation = 0;    // m, rad: largest in the hand from grip to the end
+  double creep = 0;                 // m/s in hold
+  double shake_fraction = 0;        // smallest of three axes, achieved over commanded
+  double arm_error = 0;             // m, RMS of the hand frame against plan in the reach
+  double finger_error = 0;          // m, RMS of fingertips against plan in the reach
+  double end_error = 0;             // m, hand frame against plan at the end of the reach
+  PoseError late_reach, held;       // largest from 0.8 T to the end of the reach; in hold
+  LimitViolations violations;
   PerFinger<double> force_target{};   // N, mean over the window of hold
   PerFinger<double> force_sensed{};   // N, the same
   PerFinger<double> largest_force{};  // N, any time of a finger's normal force on the object
