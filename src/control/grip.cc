@@ -1,46 +1,104 @@
 #include "control/grip.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 namespace springgrasp {
+namespace {
 
-HandVector FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
-                               const HandVector& q, const FingertipGrip& grip) {
-  std::vector<Pose> X_HB;
-  ForwardKinematics(hand, q, X_HB);
+struct Pads {
   PerFinger<Eigen::Vector3d> p_HF;
+  std::vector<Pose> X_HB;
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  // thumb to virtual finger, unit
+  int opposed = 0;                                 // fingers
+};
+
+Pads PadsAt(const KinematicTree& hand, const PerFinger<int>& tip_frames, const HandVector& q,
+            const PerFinger<bool>& involved) {
+  Pads pads;
+  ForwardKinematics(hand, q, pads.X_HB);
   Eigen::Vector3d virtual_finger = Eigen::Vector3d::Zero();
-  int count = 0;
   for (int f = 0; f < kNumFingers; ++f) {
-    p_HF[f] = FramePose(hand, X_HB, tip_frames[f]).translation();
-    if (f == kThumb || !grip.involved[f]) continue;
-    virtual_finger += p_HF[f];
-    ++count;
+    pads.p_HF[f] = FramePose(hand, pads.X_HB, tip_frames[f]).translation();
+    if (f == kThumb || !involved[f]) continue;
+    virtual_finger += pads.p_HF[f];
+    ++pads.opposed;
   }
-  HandVector torque = HandVector::Zero(q.size());
-  if (count == 0) return torque;
-  virtual_finger /= count;
-  const Eigen::Vector3d axis = (virtual_finger - p_HF[kThumb]).normalized();
+  if (pads.opposed > 0) {
+    pads.axis = (virtual_finger / pads.opposed - pads.p_HF[kThumb]).normalized();
+  }
+  return pads;
+}
+
+}  // namespace
+
+GripTorque FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
+                               const HandVector& q, const FingertipGrip& grip) {
+  GripTorque result;
+  result.torque = HandVector::Zero(q.size());
+  const Pads pads = PadsAt(hand, tip_frames, q, grip.involved);
+  if (pads.opposed == 0) return result;
+  double shares = 0;
+  for (int f = kIndex; f < kNumFingers; ++f) shares += grip.involved[f] ? grip.share[f] : 0;
   Eigen::MatrixXd J(6, hand.num_joints());
   for (int f = 0; f < kNumFingers; ++f) {
     if (!grip.involved[f]) continue;
-    const Eigen::Vector3d force = f == kThumb ? Eigen::Vector3d(grip.force * axis)
-                                              : Eigen::Vector3d(-grip.force / count * axis);
-    FrameJacobian(hand, X_HB, tip_frames[f], J);
-    torque += J.topRows<3>().transpose() * force;
+    const bool thumb = f == kThumb;
+    result.force[f] = thumb ? grip.force : grip.force / pads.opposed;
+    const double pressed = thumb ? grip.force : -grip.force * grip.share[f] / shares;
+    FrameJacobian(hand, pads.X_HB, tip_frames[f], J);
+    result.torque += J.topRows<3>().transpose() * (pressed * pads.axis);
   }
-  return torque;
+  return result;
 }
 
-HandVector EnclosingGripTorque(const EnclosingGrip& grip, int num_joints) {
-  HandVector torque = HandVector::Zero(num_joints);
-  torque[0] = grip.palm;
+Eigen::MatrixXd ClosingDirections(const KinematicTree& hand, const PerFinger<int>& tip_frames,
+                                  const HandVector& q, const PerFinger<bool>& involved) {
+  const Pads pads = PadsAt(hand, tip_frames, q, involved);
+  Eigen::MatrixXd directions(q.size(), 0);
+  Eigen::MatrixXd thumb(6, hand.num_joints()), finger(6, hand.num_joints());
+  FrameJacobian(hand, pads.X_HB, tip_frames[kThumb], thumb);
+  for (int f = kIndex; f < kNumFingers; ++f) {
+    if (!involved[f]) continue;
+    FrameJacobian(hand, pads.X_HB, tip_frames[f], finger);
+    Eigen::VectorXd d = (thumb - finger).topRows<3>().transpose() * pads.axis;
+    d -= directions * (directions.transpose() * d);
+    const double norm = d.norm();
+    if (norm < 1e-9) continue;
+    directions.conservativeResize(Eigen::NoChange, directions.cols() + 1);
+    directions.rightCols<1>() = d / norm;
+  }
+  return directions;
+}
+
+GripTorque EnclosingGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
+                               const HandVector& q, const EnclosingGrip& grip) {
+  GripTorque result;
+  result.torque = HandVector::Zero(q.size());
+  std::vector<Pose> X_HB;
+  ForwardKinematics(hand, q, X_HB);
+  Eigen::MatrixXd J(6, hand.num_joints());
+  // Force per torque of each finger's last joint: one over the pad's distance from its axis.
+  PerFinger<double> force_per_torque = {};
+  double sum = 0;
+  for (int f = kIndex; f < kNumFingers; ++f) {
+    if (!grip.involved[f]) continue;
+    FrameJacobian(hand, X_HB, tip_frames[f], J);
+    force_per_torque[f] = 1 / J.block<3, 1>(0, 2 + 2 * f).norm();
+    sum += force_per_torque[f];
+  }
+  if (sum == 0) return result;
+  const double distal = grip.force / sum;
+  result.torque[0] = grip.palm * distal;
   for (int f = 0; f < kNumFingers; ++f) {
     if (!grip.involved[f]) continue;
-    torque[1 + 2 * f] = grip.proximal;
-    torque[2 + 2 * f] = f == kThumb ? grip.thumb_distal : grip.distal;
+    const bool thumb = f == kThumb;
+    result.torque[1 + 2 * f] = (thumb ? grip.thumb_proximal : grip.proximal) * distal;
+    result.torque[2 + 2 * f] = (thumb ? grip.thumb_distal : 1) * distal;
+    result.force[f] = thumb ? grip.force : force_per_torque[f] * distal;
   }
-  return torque;
+  return result;
 }
 
 double GripForceFor(double mass, double friction, double acceleration, double safety,

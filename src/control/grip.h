@@ -10,28 +10,45 @@
 
 namespace springgrasp {
 
+// Torques of a grip, and the force of each finger on the object that they ask for.
+struct GripTorque {
+  HandVector torque;             // Nm
+  PerFinger<double> force = {};  // N
+};
+
 // Opposing thumb and virtual finger [Arbib et al., the paper's [15]]: the thumb presses with
 // `force` along the line to the mean of the other involved pads, these press back with equal and
 // opposite total.
 struct FingertipGrip {
   PerFinger<bool> involved = {};
   double force = 3;  // N, of the thumb
+  // Of the opposed fingers in that force, up to a factor; the forces reported are those of even
+  // shares.
+  PerFinger<double> share = {1, 1, 1, 1, 1};
 };
 
 // Joint torques J' F of a fingertip grip at posture q of the hand (tree with root H; frames
-// hand_?_<finger>_tip given by index). Nm, in the order of q.
-HandVector FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
+// hand_?_<finger>_tip given by index), in the order of q.
+GripTorque FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
                                const HandVector& q, const FingertipGrip& grip);
 
-// Joint torques of an enclosing grip: every flexion joint of the involved fingers presses with
-// `proximal` or `distal` torque, the palm with `palm` (Nm).
+// Directions in joint space in which such a grip closes: one for each finger opposed to the thumb,
+// orthonormal columns.
+Eigen::MatrixXd ClosingDirections(const KinematicTree& hand, const PerFinger<int>& tip_frames,
+                                  const HandVector& q, const PerFinger<bool>& involved);
+
+// An enclosing grip: the fingers press with their last phalanx what thumb and palm hold against.
+// The last joints of all fingers have the same torque, as one valve may bend several, so that the
+// shorter of them press harder; `force` (N) is that of all together, and of the thumb.
 struct EnclosingGrip {
   PerFinger<bool> involved = {};
-  double proximal = 0.3, distal = 0.25, palm = 0.1;
-  double thumb_distal =
-      0.1;  // the thumb presses with its base: bent in, it would cross the fingers
+  double force = 12;
+  // Of the last joints' torque: proximal joints, thumb's base, its last joint, palm. The thumb
+  // presses with its base: bent in, it would cross the fingers.
+  double proximal = 1.25, thumb_proximal = 1.25, thumb_distal = 0.25, palm = 0.625;
 };
-HandVector EnclosingGripTorque(const EnclosingGrip& grip, int num_joints);
+GripTorque EnclosingGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
+                               const HandVector& q, const EnclosingGrip& grip);
 
 // Thumb force that holds a mass against its weight and `acceleration` by friction of two opposed
 // contacts, times a safety factor; N.

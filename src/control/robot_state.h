@@ -21,11 +21,12 @@ using ValveVector = Eigen::Matrix<double, kNumValves, 1>;
 inline constexpr std::array<std::string_view, kNumArmJoints> kArmJointNames = {
     "shoulder1", "shoulder2", "upperarm", "elbow", "underarm", "wrist1", "wrist2"};
 struct RobotState {
-  double t = 0;                                // s, simulated
-  ArmVector arm_q = ArmVector::Zero();         // rad
-  ArmVector arm_qd = ArmVector::Zero();        // rad/s
-  HandVector hand_q;                           // rad
-  HandVector hand_qd;                          // rad/s
+  double t = 0;                          // s, simulated
+  ArmVector arm_q = ArmVector::Zero();   // rad
+  ArmVector arm_qd = ArmVector::Zero();  // rad/s
+  HandVector hand_q;                     // rad
+  HandVector hand_qd;                    // rad/s
+  HandVector hand_bias;  // Nm: gravity and Coriolis of the hand's links; empty: not known
   ValveVector pressure = ValveVector::Zero();  // bar, in the chambers
   // Joint-space inertia of the arm, hand included at its present posture (no held object), kg m^2.
   Eigen::Matrix<double, kNumArmJoints, kNumArmJoints> arm_mass =

@@ -11,7 +11,10 @@ namespace springgrasp {
 // their central differences, linearly interpolated; at rest outside the path. Not empty.
 ArmTarget ArmReferenceAt(const std::vector<ArmVector>& path, double dt, double t);
 
-// The hand's joints at time t, linearly interpolated; end values held.
-HandVector HandReferenceAt(const std::vector<HandVector>& path, double dt, double t);
+// The hand's joints, their speeds and accelerations at time t, in the same way.
+struct HandReference {
+  HandVector q, qd, qdd;  // rad, rad/s, rad/s^2
+};
+HandReference HandReferenceAt(const std::vector<HandVector>& path, double dt, double t);
 
 }  // namespace springgrasp

@@ -14,10 +14,39 @@
 namespace springgrasp {
 namespace {
 
-constexpr double kGravity = 9.81;     // m/s^2
-constexpr double kMinRise = 0.5;      // of the lift height, that the object must have risen
-constexpr double kHoldFrom = 0.7;     // of the grip phase, when the fingers have settled
+constexpr double kGravity = 9.81;  // m/s^2
+constexpr double kMinRise = 0.5;   // of the lift height, that the object must have risen
+constexpr double kEnclosingShare = 0.65;
+constexpr double kLateReach = 0.8;    // of T, from where on the hand must be where it is wanted
 constexpr double kGripWindow = 0.25;  // s, to see whether a finger touches at the end of grip
+
+PerFinger<int> TipFrames(const KinematicTree& hand) {
+  PerFinger<int> frames;
+  for (int f = 0; f < kNumFingers; ++f) {
+    frames[f] = hand.FrameIndex(fmt::format("hand_r_{}_tip", kFingerNames[f]));
+  }
+  return frames;
+}
+
+PneumaticHandModel BelievedHand(const HandLayout& layout, const PerformOptions& options) {
+  const PneumaticHandModel model(layout);
+  if (options.pneumatics.model_error == 0) return model;
+  RandomEngine engine = options.actuation;
+  return WithErrors(model, options.pneumatics.model_error, engine);
+}
+
+GripTask Task(const GraspPlan& plan, const PerformOptions& options) {
+  const GripOptions& grip = options.grip;
+  GripTask task;
+  task.enclosing = plan.type == "power";
+  task.involved = plan.involved;
+  // The thumb of an enclosing hand bears what all others press, and the load.
+  task.max_force = (task.enclosing ? kEnclosingShare : 1) * options.max_finger_force;
+  task.force = std::max(
+      task.enclosing ? grip.min_enclosing_force : grip.min_force,
+      GripForceFor(plan.mass, plan.friction, grip.acceleration, grip.safety, task.max_force));
+  return task;
+}
 
 // One trial under way: references, controllers, bookkeeping.
 class Performer {
@@ -35,41 +64,23 @@ class Performer {
         options_(options),
         criteria_(options.criteria),
         observer_(observer),
-        hand_model_(robot.layout()),
+        tip_frames_(TipFrames(hand)),
+        nominal_hand_(robot.layout()),
         drives_(options.pneumatics, simulation.timestep(), options.actuation),
+        grip_(BelievedHand(robot.layout(), options), hand, tip_frames_, Task(plan, options),
+              options.grip.settings),
         watch_(simulation, robot, object_, criteria_, performance_) {
-    for (int f = 0; f < kNumFingers; ++f) {
-      tip_frames_[f] = hand.FrameIndex(fmt::format("hand_r_{}_tip", kFingerNames[f]));
-    }
     arm_frame_ = arm.FrameIndex("hand_r_H");
   }
 
   Performance Run() {
     Settle() && Reach() && Grip() && Lift() && Hold() && Disturb() && After();
     performance_.duration = simulation_.time();
+    performance_.regrips = grip_.regrips();
     return std::move(performance_);
   }
 
  private:
-  HandVector GripTorque(const RobotState& state) const {
-    const GripOptions& grip = options_.grip;
-    if (plan_.type == "power") {
-      EnclosingGrip enclosing;
-      enclosing.involved = plan_.involved;
-      enclosing.proximal = grip.enclosing_pressure * hand_model_.torque_per_bar[1];
-      enclosing.distal = grip.distal_ratio * enclosing.proximal;
-      enclosing.thumb_distal = grip.thumb_distal_ratio * enclosing.proximal;
-      enclosing.palm = 0.5 * enclosing.proximal;
-      return EnclosingGripTorque(enclosing, robot_.layout().num_joints());
-    }
-    FingertipGrip fingertip;
-    fingertip.involved = plan_.involved;
-    fingertip.force =
-        std::max(grip.min_force, GripForceFor(plan_.mass, plan_.friction, grip.acceleration,
-                                              grip.safety, options_.max_finger_force));
-    return FingertipGripTorque(hand_, tip_frames_, state.hand_q, fingertip);
-  }
-
   // Torques that carry the believed load: J' (m g) at the object's place in the hand.
   ArmVector LoadTorque(const RobotState& state) const {
     std::vector<Pose> X_WB;
@@ -82,9 +93,9 @@ class Performer {
     return J.topRows<3>().transpose() * force + J.bottomRows<3>().transpose() * lever.cross(force);
   }
 
-  // One control and simulation step. `grip` in [0, 1] scales the grip, `load` the carried load.
-  // Returns false when the trial is over.
-  bool Step(const ArmTarget& arm_target, const HandVector& hand_q, double grip, double load) {
+  // One control and simulation step. `load` in [0, 1] scales the carried load. Returns false when
+  // the trial is over.
+  bool Step(const ArmTarget& arm_target, const HandReference& hand, GripStage stage, double load) {
     const double dt = simulation_.timestep();
     RobotState state = robot_.Read(simulation_);
     const ValveVector pressure = state.pressure;
@@ -94,29 +105,28 @@ class Performer {
     if (load > 0) target.feedforward_torque = load * LoadTorque(state);
     command.arm_torque = ControlArm(options_.arm, target, state, dt, arm_memory_);
     HandTarget hand_target;
-    hand_target.q = hand_planned_ = hand_q;
-    if (grip > 0) {
-      hand_target.torque = grip * GripTorque(state);
-      // Once the grip has settled its posture is held, against slow pushes too.
-      hand_target.integrate = q_held_.has_value();
-      if (q_held_) hand_target.q = *q_held_;
-      if (plan_.type == "power") {
-        // Enclosing fingers yield to the object's shape: no stiffness about the planned posture.
-        for (int f = 0; f < kNumFingers; ++f) {
-          if (!plan_.involved[f]) continue;
-          for (int j = 1 + 2 * f; j <= 2 + 2 * f; ++j) {
-            hand_target.q[j] = (1 - grip) * hand_target.q[j] + grip * state.hand_q[j];
-          }
-        }
-      }
-    }
-    command.valve_pressure = ControlHand(hand_model_, q_held_ ? options_.grip.hand : options_.hand,
-                                         hand_target, state, dt, hand_memory_);
+    hand_target.q = hand_planned_ = hand.q;
+    hand_target.qd = hand.qd;
+    hand_target.qdd = hand.qdd;
+    hand_target.sensing_delay = options_.pneumatics.sensing_delay;
+    command.valve_pressure = grip_.Control(state, hand_target, stage, dt);
+    WatchLimits(robot_, nominal_hand_, options_.pneumatics, state, target.q, hand.q, command, dt,
+                performance_.violations);
     command.valve_pressure = drives_.Step(command.valve_pressure, pressure);
     robot_.Write(command, simulation_);
     simulation_.Step();
     watch_.Step(dt);
     if (simulation_.diverged()) return false;
+    const HandLoad load_now = watch_.Load();
+    for (int f = 0; f < kNumFingers; ++f) {
+      performance_.largest_force[f] = std::max(performance_.largest_force[f], load_now.normal[f]);
+    }
+    ++force_window_.count;
+    const PerFinger<double> sensed = grip_.SensedForce(state);
+    for (int f = 0; f < kNumFingers; ++f) {
+      force_window_.target[f] += grip_.target_force()[f];
+      force_window_.sensed[f] += sensed[f];
+    }
     Sample(state, command);
     if (observer_) observer_(simulation_, performance_.reached);
     return !watch_.over();
@@ -139,6 +149,8 @@ class Performer {
     sample.palm_normal = load.palm_normal;
     sample.state = state;
     sample.hand_planned = hand_planned_;
+    sample.force_target = grip_.target_force();
+    sample.force_sensed = grip_.SensedForce(state);
     sample.command = command;
     performance_.trajectory.push_back(sample);
   }
@@ -151,11 +163,27 @@ class Performer {
     return target;
   }
 
+  // Of the reach at time t, between its samples.
+  Pose PlannedPose(double t) const {
+    const double s = std::clamp(t / plan_.dt, 0.0, static_cast<double>(plan_.X_WH.size() - 1));
+    const auto i = static_cast<std::size_t>(s);
+    const Pose& a = plan_.X_WH[i];
+    const Pose& b = plan_.X_WH[std::min(i + 1, plan_.X_WH.size() - 1)];
+    const double u = s - static_cast<double>(i);
+    return MakePose((1 - u) * a.translation() + u * b.translation(),
+                    Eigen::Quaterniond(a.linear()).slerp(u, Eigen::Quaterniond(b.linear())));
+  }
+
+  HandReference StillAt(const HandVector& q) const {
+    return {q, HandVector::Zero(q.size()), HandVector::Zero(q.size())};
+  }
+
   bool Settle() {
     Enter(Phase::kSettle);
     planned_ = plan_.X_WH.front();
     for (long i = 0; i < StepsFor(criteria_.settle); ++i) {
-      if (!Step(Rest(plan_.arm.front()), plan_.hand.front(), 0, 0)) return false;
+      if (!Step(Rest(plan_.arm.front()), StillAt(plan_.hand.front()), GripStage::kFree, 0))
+        return false;
     }
     watch_.Settled();
     return true;
@@ -169,15 +197,16 @@ class Performer {
     const long steps = StepsFor(end);
     for (long i = 0; i < steps; ++i) {
       const double t = static_cast<double>(i) * simulation_.timestep();
-      const std::size_t k = std::min(plan_.arm.size() - 1, static_cast<std::size_t>(t / plan_.dt));
-      planned_ = plan_.X_WH[k];
-      if (!Step(ArmReferenceAt(plan_.arm, plan_.dt, t), HandReferenceAt(plan_.hand, plan_.dt, t), 0,
-                0)) {
+      planned_ = PlannedPose(t + simulation_.timestep());
+      if (!Step(ArmReferenceAt(plan_.arm, plan_.dt, t), HandReferenceAt(plan_.hand, plan_.dt, t),
+                t < plan_.T ? GripStage::kFree : GripStage::kClosing, 0)) {
         return false;
       }
       const Pose X_WH = robot_.HandPose(simulation_);
       arm_sum += (X_WH.translation() - planned_.translation()).squaredNorm();
+      if (t > kLateReach * plan_.T) performance_.late_reach.Add(X_WH, planned_);
       if (t > plan_.T) continue;
+      const std::size_t k = std::min(plan_.arm.size() - 1, static_cast<std::size_t>(t / plan_.dt));
       for (int f = 0; f < kNumFingers; ++f) {
         if (!plan_.involved[f]) continue;
         finger_sum += (X_WH.inverse() * robot_.Fingertip(simulation_, f) -
@@ -196,12 +225,10 @@ class Performer {
   bool Grip() {
     Enter(Phase::kGrip);
     planned_ = plan_.X_WH.back();
-    const double ramp = options_.grip.ramp;
     for (long i = 0; i < StepsFor(criteria_.grip); ++i) {
       const double t = static_cast<double>(i) * simulation_.timestep();
       if (t <= criteria_.grip - kGripWindow) watch_.window().Clear();
-      if (!q_held_ && t >= kHoldFrom * criteria_.grip) q_held_ = robot_.Read(simulation_).hand_q;
-      if (!Step(Rest(plan_.arm.back()), plan_.hand.back(), std::clamp(t / ramp, 1e-3, 1.0), 0)) {
+      if (!Step(Rest(plan_.arm.back()), StillAt(plan_.hand.back()), GripStage::kPressing, 0)) {
         return false;
       }
     }
@@ -222,8 +249,8 @@ class Performer {
     for (long i = 0; i < StepsFor(criteria_.lift); ++i) {
       const double t = static_cast<double>(i) * simulation_.timestep();
       watch_.window().Clear();
-      if (!Step(ArmReferenceAt(plan_.lift, plan_.dt, t), plan_.hand.back(), 1,
-                std::min(1.0, t / (0.2 * criteria_.lift)))) {
+      if (!Step(ArmReferenceAt(plan_.lift, plan_.dt, t), StillAt(plan_.hand.back()),
+                GripStage::kPressing, std::min(1.0, t / (0.2 * criteria_.lift)))) {
         return false;
       }
     }
@@ -237,17 +264,29 @@ class Performer {
 
   bool Hold() {
     Enter(Phase::kHold);
+    std::vector<Pose> X_WB;
+    ForwardKinematics(arm_, plan_.lift.back(), X_WB);
+    planned_ = FramePose(arm_, X_WB, arm_frame_);
     const double quiet = 0.5;  // s, let the lift die out before creep is measured
     Eigen::Vector3d p_HO_quiet = watch_.ObjectInHand().translation();
     for (long i = 0; i < StepsFor(criteria_.hold); ++i) {
       const double t = static_cast<double>(i) * simulation_.timestep();
       if (t <= quiet) p_HO_quiet = watch_.ObjectInHand().translation();
-      if (t <= criteria_.hold - criteria_.window) watch_.window().Clear();
-      if (!Step(Rest(plan_.lift.back()), plan_.hand.back(), 1, 1)) return false;
+      if (t <= criteria_.hold - criteria_.window) {
+        watch_.window().Clear();
+        force_window_ = {};
+      }
+      if (!Step(Rest(plan_.lift.back()), StillAt(plan_.hand.back()), GripStage::kPressing, 1))
+        return false;
+      performance_.held.Add(robot_.HandPose(simulation_), planned_);
     }
     performance_.creep = (watch_.ObjectInHand().translation() - p_HO_quiet).norm() /
                          std::max(0.1, criteria_.hold - quiet);
     performance_.hold = watch_.window().Mean();
+    for (int f = 0; f < kNumFingers; ++f) {
+      performance_.force_target[f] = force_window_.target[f] / std::max(1, force_window_.count);
+      performance_.force_sensed[f] = force_window_.sensed[f] / std::max(1, force_window_.count);
+    }
     return true;
   }
 
@@ -258,7 +297,8 @@ class Performer {
       for (const double sign : {1.0, -1.0}) {
         simulation_.ApplyForce(object_name_, sign * force * Eigen::Vector3d::Unit(axis));
         for (long i = 0; i < StepsFor(criteria_.force_duration); ++i) {
-          if (!Step(Rest(plan_.lift.back()), plan_.hand.back(), 1, 1)) return false;
+          if (!Step(Rest(plan_.lift.back()), StillAt(plan_.hand.back()), GripStage::kPressing, 1))
+            return false;
         }
       }
     }
@@ -268,7 +308,8 @@ class Performer {
       double low = 1e9, high = -1e9;
       for (long i = 0; i < StepsFor(criteria_.shake_duration); ++i) {
         const double t = static_cast<double>(i) * simulation_.timestep();
-        if (!Step(ArmReferenceAt(plan_.shake[axis], plan_.dt, t), plan_.hand.back(), 1, 1)) {
+        if (!Step(ArmReferenceAt(plan_.shake[axis], plan_.dt, t), StillAt(plan_.hand.back()),
+                  GripStage::kPressing, 1)) {
           return false;
         }
         const double x = robot_.HandPose(simulation_).translation()[axis];
@@ -285,7 +326,8 @@ class Performer {
     Enter(Phase::kAfter);
     watch_.window().Clear();
     for (long i = 0; i < StepsFor(criteria_.after); ++i) {
-      if (!Step(Rest(plan_.lift.back()), plan_.hand.back(), 1, 1)) return false;
+      if (!Step(Rest(plan_.lift.back()), StillAt(plan_.hand.back()), GripStage::kPressing, 1))
+        return false;
     }
     performance_.after = watch_.window().Mean();
     if (watch_.slip()) performance_.events.push_back(*watch_.slip());
@@ -311,17 +353,20 @@ class Performer {
   const PerformOptions& options_;
   const TrialCriteria& criteria_;
   const StepObserver& observer_;
-  const PneumaticHandModel hand_model_;
+  const PerFinger<int> tip_frames_;
+  const PneumaticHandModel nominal_hand_;
   PneumaticDrives drives_;
-  PerFinger<int> tip_frames_;
+  GripController grip_;
   int arm_frame_ = 0;
   ArmControlState arm_memory_;
-  HandControlState hand_memory_;
   Performance performance_;
   TrialWatch watch_;  // writes into performance_, so it stands after it
   Pose planned_ = Pose::Identity();
-  std::optional<HandVector> q_held_;
   HandVector hand_planned_;
+  struct {
+    int count = 0;
+    PerFinger<double> target{}, sensed{};
+  } force_window_;
   double next_sample_ = 0;
 };
 

@@ -1,14 +1,16 @@
 // PERFORM: one planned grasp in physics, phase by phase.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "control/arm_controller.h"
-#include "control/pneumatic_hand.h"
+#include "control/grip_controller.h"
 #include "experiment/contact_window.h"
 #include "experiment/grasp_plan.h"
+#include "experiment/limit_watch.h"
 #include "experiment/phases.h"
 #include "experiment/verdict.h"
 #include "kinematics/kinematic_tree.h"
@@ -18,26 +20,12 @@
 
 namespace springgrasp {
 
-// A gripping hand is stiffer than a moving one: the closed chain damps it (tuned with the first
-// grasps, seeds below 1000).
-inline PneumaticGains StiffHold() {
-  PneumaticGains gains;
-  gains.stiffness = 1.0;
-  gains.integral = 2.0;
-  gains.damping = 0.04;
-  gains.max_integral = 0.25;
-  return gains;
-}
-
 struct GripOptions {
   double acceleration = 20;         // m/s^2, that the grip shall withstand besides gravity
-  double safety = 2.5;              // of the fingertip grip force
-  double min_force = 2.5;           // N
-  double enclosing_pressure = 3.0;  // bar, of the involved fingers in a power grasp
-  double thumb_distal_ratio = 0.3;
-  double distal_ratio = 0.8;          // distal over proximal pressure in a power grasp
-  PneumaticGains hand = StiffHold();  // once the grip has settled
-  double ramp = 0.6;                  // s, to full grip
+  double safety = 2.5;              // of the grip force
+  double min_force = 2.5;           // N, of the thumb at the fingertips
+  double min_enclosing_force = 10;  // N, of all fingers of a power grasp together
+  GripSettings settings;
 };
 
 struct PerformOptions {
@@ -45,7 +33,6 @@ struct PerformOptions {
   TrialCriteria criteria;
   GripOptions grip;
   ArmGains arm;
-  PneumaticGains hand;
   PneumaticParameters pneumatics;  // of the scene
   RandomEngine actuation{0};       // stream "actuation" of the trial: sensor noise
   double max_finger_force = 5;     // N
@@ -58,11 +45,22 @@ struct TrajectorySample {
   Phase phase = Phase::kSettle;
   Pose X_WO, X_WH, X_WH_planned;
   PerFinger<Eigen::Vector3d> p_WF;
-  PerFinger<double> normal;  // N
-  double palm_normal = 0;    // N
-  RobotState state;          // mass and bias left out of files
-  HandVector hand_planned;   // rad
+  PerFinger<double> normal;                          // N
+  double palm_normal = 0;                            // N
+  RobotState state;                                  // mass and bias left out of files
+  HandVector hand_planned;                           // rad
+  PerFinger<double> force_target{}, force_sensed{};  // N, asked for; felt along the grip's axis
   RobotCommand command;
+};
+
+// Of the hand frame H against its plan.
+struct PoseError {
+  double position = 0, rotation = 0;  // m, rad
+  void Add(const Pose& X, const Pose& planned) {
+    position = std::max(position, (X.translation() - planned.translation()).norm());
+    rotation = std::max(rotation, RotationDistance(Eigen::Quaterniond(X.linear()),
+                                                   Eigen::Quaterniond(planned.linear())));
+  }
 };
 
 struct Performance {
@@ -75,7 +73,13 @@ struct Performance {
   double arm_error = 0;             // m, RMS of the hand frame against plan in the reach
   double finger_error = 0;          // m, RMS of fingertips against plan in the reach
   double end_error = 0;             // m, hand frame against plan at the end of the reach
-  double duration = 0;              // s, simulated
+  PoseError late_reach, held;       // largest from 0.8 T to the end of the reach; in hold
+  LimitViolations violations;
+  PerFinger<double> force_target{};   // N, mean over the window of hold
+  PerFinger<double> force_sensed{};   // N, the same
+  PerFinger<double> largest_force{};  // N, any time of a finger's normal force on the object
+  int regrips = 0;
+  double duration = 0;  // s, simulated
   std::vector<TrajectorySample> trajectory;
 };
 

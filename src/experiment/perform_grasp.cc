@@ -41,6 +41,8 @@ void RecordPerformance(const Performance& p, const std::string& type, const Perf
   if (p.reached > Phase::kReach) {
     v["arm_error_mm"] = 1e3 * p.arm_error;
     v["arm_end_error_mm"] = 1e3 * p.end_error;
+    v["arm_late_error_mm"] = 1e3 * p.late_reach.position;
+    v["arm_late_error_deg"] = kDegrees * p.late_reach.rotation;
     v["finger_error_mm"] = 1e3 * p.finger_error;
   }
   const ContactWindow& window = p.reached > Phase::kDisturb ? p.after
@@ -52,6 +54,14 @@ void RecordPerformance(const Performance& p, const std::string& type, const Perf
       v[fmt::format("load_share_{}", kFingerNames[f])] = window.LoadShare(f);
     }
     v["palm_normal_n"] = window.palm_normal;
+    for (int f = 0; f < kNumFingers; ++f) {
+      v[fmt::format("largest_force_{}_n", kFingerNames[f])] = p.largest_force[f];
+      if (p.reached <= Phase::kHold || p.force_target[f] == 0) continue;
+      v[fmt::format("force_target_{}_n", kFingerNames[f])] = p.force_target[f];
+      v[fmt::format("force_sensed_{}_n", kFingerNames[f])] = p.force_sensed[f];
+      v[fmt::format("force_hold_{}_n", kFingerNames[f])] = p.hold.normal[f];
+    }
+    v["regrips"] = p.regrips;
     const ContactCheck check = CheckContacts(type, window, options.shape, options.criteria);
     v["opposition_deg"] = check.opposition_deg;
     v["epsilon"] = check.epsilon;
@@ -61,7 +71,18 @@ void RecordPerformance(const Performance& p, const std::string& type, const Perf
     v["slip_mm"] = 1e3 * p.slip;
     v["rotation_deg"] = kDegrees * p.rotation;
   }
-  if (p.reached > Phase::kHold) v["creep_mm_s"] = 1e3 * p.creep;
+  if (p.reached > Phase::kHold) {
+    v["creep_mm_s"] = 1e3 * p.creep;
+    v["arm_hold_error_mm"] = 1e3 * p.held.position;
+    v["arm_hold_error_deg"] = kDegrees * p.held.rotation;
+  }
+  v["beyond_arm_torque_nm"] = p.violations.arm_torque;
+  v["beyond_arm_torque_s"] = p.violations.arm_torque_s;
+  v["beyond_arm_range_deg"] = kDegrees * p.violations.arm_range;
+  v["beyond_hand_range_deg"] = kDegrees * p.violations.hand_range;
+  v["below_ambient_bar"] = p.violations.pressure_low;
+  v["beyond_supply_bar"] = p.violations.pressure_high;
+  v["beyond_valve_rate_bar_s"] = p.violations.valve_rate;
   if (p.reached > Phase::kDisturb) v["shake_fraction"] = p.shake_fraction;
 }
 

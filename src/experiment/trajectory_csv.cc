@@ -37,6 +37,8 @@ std::string FormatTrajectory(const std::vector<TrajectorySample>& trajectory,
   for (const auto valve : hand.valves) text += fmt::format(",{}_bar", valve);
   for (const auto joint : kArmJointNames) text += fmt::format(",{}_torque_nm", joint);
   for (const auto valve : hand.valves) text += fmt::format(",{}_command_bar", valve);
+  for (const auto finger : kFingerNames) text += fmt::format(",{}_force_target_n", finger);
+  for (const auto finger : kFingerNames) text += fmt::format(",{}_force_sensed_n", finger);
   text += '\n';
   for (const TrajectorySample& s : trajectory) {
     text += fmt::format("{:.4f},{}", s.t, PhaseName(s.phase));
@@ -52,6 +54,8 @@ std::string FormatTrajectory(const std::vector<TrajectorySample>& trajectory,
     Append(text, s.state.pressure);
     Append(text, s.command.arm_torque);
     Append(text, s.command.valve_pressure);
+    for (const double n : s.force_target) text += fmt::format(",{:.4g}", n);
+    for (const double n : s.force_sensed) text += fmt::format(",{:.4g}", n);
     text += '\n';
   }
   return text;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "sim/model_index.h"
 
@@ -51,6 +52,7 @@ void ApplyPneumatics(const PneumaticParameters& p, mjModel& model) {
 PneumaticDrives::PneumaticDrives(const PneumaticParameters& parameters, double dt,
                                  RandomEngine engine)
     : parameters_(parameters),
+      dt_(dt),
       fill_time_(parameters.fill_time.value_or(kFillTime)),
       supply_(parameters.supply.value_or(kMaxPressureBar)),
       waiting_(static_cast<std::size_t>(std::lround(parameters.delay / dt)), ValveVector::Zero()),
@@ -82,6 +84,27 @@ void PneumaticDrives::Sense(RobotState& state) {
   if (parameters_.angle_noise > 0) {
     for (double& q : state.hand_q) q += parameters_.angle_noise * Normal(engine_);
   }
+  if (parameters_.sensing_delay > 0) {
+    const Reading now = {state.hand_q, state.hand_bias, state.pressure};
+    if (readings_.empty()) {
+      readings_.assign(static_cast<std::size_t>(std::lround(parameters_.sensing_delay / dt_)), now);
+    }
+    if (!readings_.empty()) {
+      const Reading old = std::exchange(readings_[next_reading_], now);
+      next_reading_ = (next_reading_ + 1) % readings_.size();
+      state.hand_q = old.q;
+      state.hand_bias = old.bias;
+      state.pressure = old.pressure;
+    }
+  }
+  if (parameters_.angle_noise == 0 && parameters_.sensing_delay == 0) return;
+  if (last_q_.size() == 0) {
+    last_q_ = state.hand_q;
+    speed_ = HandVector::Zero(state.hand_q.size());
+  }
+  speed_ += dt_ / (kSpeedFilter + dt_) * ((state.hand_q - last_q_) / dt_ - speed_);
+  last_q_ = state.hand_q;
+  state.hand_qd = speed_;
 }
 
 }  // namespace springgrasp

@@ -76,9 +76,11 @@ RobotState RobotIo::Read(const Simulation& simulation) const {
   }
   state.hand_q.resize(layout_->num_joints());
   state.hand_qd.resize(layout_->num_joints());
+  state.hand_bias.resize(layout_->num_joints());
   for (int i = 0; i < layout_->num_joints(); ++i) {
     state.hand_q[i] = data.qpos[hand_qpos_[i]];
     state.hand_qd[i] = data.qvel[hand_dof_[i]];
+    state.hand_bias[i] = data.qfrc_bias[hand_dof_[i]];
   }
   for (int i = 0; i < kNumValves; ++i) state.pressure[i] = data.act[valve_act_[i]];
   // MuJoCo keeps row i of the inertia sparse: its own dof, then that dof's ancestors.

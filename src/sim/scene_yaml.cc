@@ -199,6 +199,8 @@ void ReadPneumatics(YamlReader yaml, PneumaticParameters& p) {
   yaml.Read("max_rate", p.max_rate, {0, 1000});
   yaml.Read("pressure_noise", p.pressure_noise, {0, 1});
   yaml.Read("angle_noise", p.angle_noise, {0, 0.5});
+  yaml.Read("sensing_delay", p.sensing_delay, {0, 0.2});
+  yaml.Read("model_error", p.model_error, {0, 0.5});
   yaml.Finish();
 }
 

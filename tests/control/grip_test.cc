@@ -41,7 +41,7 @@ TEST(GripTest, FingertipGripDoesNoWorkWhenTheHandTurnsAsAWhole) {
   FingertipGrip grip;
   grip.involved = {true, true, true, false, false};
   const HandVector q = HandVector::Constant(11, 0.2);
-  const HandVector torque = FingertipGripTorque(tree, {0, 1, 2, 3, 4}, q, grip);
+  const HandVector torque = FingertipGripTorque(tree, {0, 1, 2, 3, 4}, q, grip).torque;
   EXPECT_GT(torque.cwiseAbs().maxCoeff(), 0.05);
   EXPECT_EQ(torque[7], 0);   // ring
   EXPECT_EQ(torque[10], 0);  // pinkie
@@ -53,7 +53,7 @@ TEST(GripTest, FingertipGripTorqueIsTheGradientOfTheDistanceBetweenTheOpposedPad
   grip.involved = {true, true, false, false, false};
   grip.force = 2;
   const HandVector q = HandVector::LinSpaced(11, -0.2, 0.4);
-  const HandVector torque = FingertipGripTorque(tree, {0, 1, 2, 3, 4}, q, grip);
+  const HandVector torque = FingertipGripTorque(tree, {0, 1, 2, 3, 4}, q, grip).torque;
   const auto distance = [&](const HandVector& at) {
     std::vector<Pose> X;
     ForwardKinematics(tree, at, X);
@@ -65,6 +65,46 @@ TEST(GripTest, FingertipGripTorqueIsTheGradientOfTheDistanceBetweenTheOpposedPad
     low[j] -= 1e-6;
     EXPECT_NEAR(torque[j], -grip.force * (distance(high) - distance(low)) / 2e-6, 1e-6) << j;
   }
+}
+
+TEST(GripTest, EvenSharesPressWithTheForcesThatAreReported) {
+  const KinematicTree tree = ToyHand();
+  FingertipGrip grip;
+  grip.involved = {true, true, true, false, false};
+  grip.force = 4;
+  const GripTorque even =
+      FingertipGripTorque(tree, {0, 1, 2, 3, 4}, HandVector::Constant(11, 0.2), grip);
+  EXPECT_EQ(even.force[kThumb], 4);
+  EXPECT_EQ(even.force[kIndex] + even.force[kMiddle], 4);
+  grip.share[kIndex] = 3;
+  const GripTorque uneven =
+      FingertipGripTorque(tree, {0, 1, 2, 3, 4}, HandVector::Constant(11, 0.2), grip);
+  EXPECT_NEAR(uneven.torque[3], 1.5 * even.torque[3], 1e-12);
+  EXPECT_NEAR(uneven.torque[5], 0.5 * even.torque[5], 1e-12);
+  EXPECT_EQ(uneven.torque[1], even.torque[1]);
+}
+
+TEST(GripTest, ClosingDirectionsAreOrthonormalAndHoldTheTorqueOfTheGrip) {
+  const KinematicTree tree = ToyHand();
+  FingertipGrip grip;
+  grip.involved = {true, true, true, false, false};
+  const HandVector q = HandVector::LinSpaced(11, -0.2, 0.4);
+  const Eigen::MatrixXd d = ClosingDirections(tree, {0, 1, 2, 3, 4}, q, grip.involved);
+  ASSERT_EQ(d.cols(), 2);
+  EXPECT_TRUE((d.transpose() * d).isIdentity(1e-9));
+  const Eigen::VectorXd torque = FingertipGripTorque(tree, {0, 1, 2, 3, 4}, q, grip).torque;
+  EXPECT_LT((torque - d * (d.transpose() * torque)).norm(), 1e-9);
+}
+
+TEST(GripTest, EnclosingFingersPressTogetherWithTheForceAskedFor) {
+  const KinematicTree tree = ToyHand();
+  EnclosingGrip grip;
+  grip.involved.fill(true);
+  grip.force = 8;
+  const GripTorque t =
+      EnclosingGripTorque(tree, {0, 1, 2, 3, 4}, HandVector::Constant(11, 0.2), grip);
+  EXPECT_NEAR(t.force[1] + t.force[2] + t.force[3] + t.force[4], 8, 1e-12);
+  EXPECT_NEAR(t.torque[4], t.force[kIndex] * 0.05, 1e-12);  // pads 50 mm from the last joint
 }
 
 TEST(GripTest, ForceHoldsTheWeightByFrictionAndIsBounded) {

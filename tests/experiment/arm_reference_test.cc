@@ -29,8 +29,9 @@ TEST(ArmReferenceTest, RestsBeyondTheEnd) {
 
 TEST(ArmReferenceTest, HandAnglesAreInterpolated) {
   const std::vector<HandVector> path = {HandVector::Constant(11, 0), HandVector::Constant(11, 1)};
-  EXPECT_NEAR(HandReferenceAt(path, 0.1, 0.025)[2], 0.25, 1e-12);
-  EXPECT_EQ(HandReferenceAt(path, 0.1, 9)[2], 1);
+  EXPECT_NEAR(HandReferenceAt(path, 0.1, 0.025).q[2], 0.25, 1e-12);
+  EXPECT_EQ(HandReferenceAt(path, 0.1, 9).q[2], 1);
+  EXPECT_EQ(HandReferenceAt(path, 0.1, 9).qd[2], 0);
 }
 
 }  // namespace

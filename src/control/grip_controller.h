@@ -1,0 +1,92 @@
+// The hand from its reach to the held object: follows the planned angles, recognises by pressure
+// and angle where each finger touches, presses with a chosen force once the opposed fingers do, and
+// regrips when they come closer together than they were, which the object only lets them if it
+// slips. At the fingertips the force is held by what is sensed of it.
+#pragma once
+
+#include "control/contact_sense.h"
+#include "control/grip.h"
+#include "control/pneumatic_hand.h"
+
+namespace springgrasp {
+
+// A gripping hand is stiffer than a moving one: the closed chain damps it (tuned with the first
+// grasps, seeds below 1000).
+inline PneumaticGains StiffHold() {
+  PneumaticGains gains;
+  gains.stiffness = 1.0;
+  gains.integral = 2.0;
+  gains.damping = 0.04;
+  gains.max_integral = 0.25;
+  gains.integral_leak = 1.5;
+  return gains;
+}
+
+struct GripSettings {
+  PneumaticGains moving, holding = StiffHold();
+  ContactSettings contact;
+  double closing_rate = 0.6;        // rad/s, of a finger that did not touch where it was planned to
+  double max_closing = 0.25;        // rad beyond the plan
+  double patience = 0.5;            // s, for all fingers to touch; then they press anyhow
+  double ramp = 0.5;                // s, to the full force
+  double settle = 0.4;              // s after that until the posture is held
+  double force_integral = 3;        // 1/s, of the sensed force's error
+  double max_correction = 0.4;      // of the force
+  double regrip_distance = 0.0015;  // m, that thumb and fingers come closer when the object slips
+  double regrip_factor = 1.3;       // on the force
+  double regrip_pause = 0.15;       // s
+};
+
+struct GripTask {
+  bool enclosing = false;
+  PerFinger<bool> involved = {};
+  double force = 3;      // N, of the thumb
+  double max_force = 5;  // N, of any finger
+};
+
+enum class GripStage { kFree, kClosing, kPressing };
+
+class GripController {
+ public:
+  // `hand` (root H) must outlive this; frames of the pads by index.
+  GripController(const PneumaticHandModel& model, const KinematicTree& hand,
+                 const PerFinger<int>& tip_frames, const GripTask& task,
+                 const GripSettings& settings = {});
+
+  // Valve commands (bar). `reference`: what the plan wants of the joints now. Stage kFree: nothing
+  // is near; kClosing: fingers stop where they touch; kPressing: they grip.
+  ValveVector Control(const RobotState& state, const HandTarget& reference, GripStage stage,
+                      double dt);
+
+  bool held() const { return held_; }
+  int regrips() const { return regrips_; }
+  const PerFinger<bool>& touching() const { return sense_.touching; }
+  // Asked for now, and as the robot feels it along the grip's axis; N.
+  const PerFinger<double>& target_force() const { return target_force_; }
+  PerFinger<double> SensedForce(const RobotState& state) const;
+
+ private:
+  void Press(const RobotState& state, double dt, HandTarget& target);
+  void WatchSlip(const RobotState& state, double dt);
+  double Aperture(const HandVector& q) const;
+
+  const PneumaticHandModel model_;
+  const KinematicTree& hand_;
+  const PerFinger<int> tip_frames_;
+  const GripTask task_;
+  const GripSettings settings_;
+  HandControlState memory_;
+  ContactSense sense_;
+  HandVector touched_;               // rad, where each touching finger stopped
+  HandVector reference_;             // rad, posture that is held
+  double waited_ = 0, pressed_ = 0;  // s
+  double closing_ = 0;               // rad
+  bool pressing_ = false, held_ = false;
+  double correction_ = 0;  // N
+  PerFinger<double> share_ = {1, 1, 1, 1, 1};
+  double force_scale_ = 1, aperture_ = 0, since_regrip_ = 0;
+  int regrips_ = 0;
+  PerFinger<double> target_force_ = {};
+};
+
+}  // namespace springgrasp
