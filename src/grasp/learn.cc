@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "demonstration/half_seen.h"
 #include "demonstration/steady_hand.h"
 #include "grasp/aperture.h"
 #include "grasp/generate_fingers.h"
@@ -188,7 +189,7 @@ Grasp LearnGrasp(const Demonstration& shown, const LearnOptions& options) {
       "profile is '{}', expected human, paper or unforced", options.profile);
 
   // The hand's movement, and where in it the reach lies.
-  const Demonstration demonstration = WithSteadyHand(shown, grasp.involved);
+  const Demonstration demonstration = WithSteadyHand(WithoutHalfSeenTips(shown), grasp.involved);
   HandTrack track = MakeHandTrack(demonstration);
   grasp.observed = track.observed;
   PerFinger<bool> closing = grasp.involved;
