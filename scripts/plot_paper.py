@@ -53,6 +53,15 @@ def tips_in_hand(table):
     return out
 
 
+def steadied(program, demonstration, kind):
+    """The demonstration with the hand as learning sees it."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "steady.csv")
+        call = [program, "learn", demonstration, "--type", kind, "-o", os.path.join(folder, "grasp.yaml")]
+        subprocess.run(call + ["--steady", path], check=True, stdout=subprocess.DEVNULL)
+        return read_table(path)
+
+
 def generate(program, grasp, run):
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "motion.csv")
@@ -106,7 +115,7 @@ def fingers(program, figure, _):
         path = os.path.join(ROOT, "models", "grasps", name)
         with open(path + ".yaml", encoding="utf-8") as file:
             learned = yaml.safe_load(file)
-        seen = read_table(path + ".csv")
+        seen = steadied(program, path + ".csv", learned["type"])
         run = {"object": "0 0 0 1 0 0 0", "shape": learned["object"]["shape"]}
         made_table = generate(program, path + ".yaml", run)
         observed, made = tips_in_hand(seen), tips_in_hand(made_table)

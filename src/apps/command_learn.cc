@@ -5,18 +5,21 @@
 
 #include "apps/command.h"
 #include "demonstration/demonstration.h"
+#include "demonstration/half_seen.h"
+#include "demonstration/steady_hand.h"
 #include "grasp/learn.h"
 
 namespace springgrasp {
 namespace {
 
 struct Options {
-  std::string demonstration, output, object, pose;
+  std::string demonstration, output, object, pose, steady;
   LearnOptions learn;
 };
 
 int Learn(Options options) {
   CheckOutputPath(options.output);
+  if (!options.steady.empty()) CheckOutputPath(options.steady);
   const Demonstration demonstration = ReadDemonstration(options.demonstration);
   if (!options.object.empty()) {
     DemonstratedObject object;
@@ -27,6 +30,11 @@ int Learn(Options options) {
   const Grasp grasp = LearnGrasp(demonstration, options.learn);
   MakeFolderOf(options.output);
   WriteGrasp(grasp, options.output);
+  if (!options.steady.empty()) {
+    MakeFolderOf(options.steady);
+    WriteDemonstration(WithSteadyHand(WithoutHalfSeenTips(demonstration), grasp.involved),
+                       options.steady);
+  }
   fmt::print("{}", ReportGrasp(grasp));
   return kDone;
 }
@@ -59,6 +67,9 @@ void AddLearnCommand(CLI::App& app, int& exit_code) {
                    "of the demonstrator, wrist to middle fingertip, m: scales the rest lengths")
       ->check(CLI::Range(0.1, 0.3))
       ->capture_default_str();
+  command->add_option("--steady", options->steady,
+                      "demonstration CSV to write: the hand as learning sees it, steadied by the "
+                      "fingertips");
   CLI::Option* object = command->add_option(
       "--object", options->object,
       "the object that was grasped: sphere:D, cylinder:DxH or box:XxYxZ, metres");

@@ -17,6 +17,15 @@ double Aperture(const PerFinger<Vector3d>& p_H, const PerFinger<bool>& involved)
   return (mean / std::max(1, count) - p_H[kThumb]).norm();
 }
 
+double WidestStep(const std::vector<PerFinger<Vector3d>>& p_H, const PerFinger<bool>& involved,
+                  std::size_t widest) {
+  const double least = Aperture(p_H[widest], involved) - 0.001;
+  std::size_t from = widest, to = widest;
+  while (from > 0 && Aperture(p_H[from - 1], involved) >= least) --from;
+  while (to + 1 < p_H.size() && Aperture(p_H[to + 1], involved) >= least) ++to;
+  return 0.5 * static_cast<double>(from + to);
+}
+
 WidestAperture FindWidestAperture(const FingertipMotion& motion) {
   WidestAperture out;
   out.start = Aperture(motion.samples.front().p_HF, motion.involved);

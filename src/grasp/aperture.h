@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <vector>
 
 #include "base/fingers.h"
 #include "grasp/fingertip_motion.h"
@@ -10,6 +12,11 @@ namespace springgrasp {
 
 // Distance between the thumb and the mean of the other involved tips, m.
 double Aperture(const PerFinger<Eigen::Vector3d>& p_H, const PerFinger<bool>& involved);
+
+// When a hand is widest, in steps of `p_H`: the middle of the steps around `widest` at which it is
+// as wide to 1 mm, which is what a tip is known to. Hands stay wide for a tenth of the reach.
+double WidestStep(const std::vector<PerFinger<Eigen::Vector3d>>& p_H,
+                  const PerFinger<bool>& involved, std::size_t widest);
 
 struct WidestAperture {
   double start = 0;   // m, of the first sample

@@ -17,8 +17,8 @@ using Eigen::VectorXd;
 
 // Of T, over which the central force changes its sign. Profile paper: spring-model note, section 6.
 // Profile human: the hand comes to rest at its widest, as people's do; chosen on tracked
-// demonstrations of the four types, seeds 1 to 6.
-constexpr double kBlend = 0.05, kCalmBlend = 0.3;
+// demonstrations of the four types, seeds 1 and 2.
+constexpr double kBlend = 0.05, kCalmBlend = 0.2;
 
 }  // namespace
 

@@ -58,7 +58,7 @@ Eigen::MatrixXd SystemPoints(const FingerRun& run, const std::vector<int>& finge
 
 // Eq. (7) on the listed fingers with the run's gains, from |a| of H's origin (m/s^2) at even steps.
 // The sign is blended around the switch, since |a| is not zero there on curved reaches: over 0.05
-// T, with `hold` over 0.3 T.
+// T, with `hold` over 0.2 T.
 CentralForce MakeRunForce(const FingerRun& run, const std::vector<int>& fingers,
                           const std::vector<double>& acceleration, double dt);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "demonstration/half_seen.h"
 #include "demonstration/steady_hand.h"
 #include "grasp/aperture.h"
 #include "grasp/generate_fingers.h"
@@ -188,7 +189,7 @@ Grasp LearnGrasp(const Demonstration& shown, const LearnOptions& options) {
       "profile is '{}', expected human, paper or unforced", options.profile);
 
   // The hand's movement, and where in it the reach lies.
-  const Demonstration demonstration = WithSteadyHand(shown, grasp.involved);
+  const Demonstration demonstration = WithSteadyHand(WithoutHalfSeenTips(shown), grasp.involved);
   HandTrack track = MakeHandTrack(demonstration);
   grasp.observed = track.observed;
   PerFinger<bool> closing = grasp.involved;
@@ -325,7 +326,8 @@ Grasp LearnGrasp(const Demonstration& shown, const LearnOptions& options) {
   fit.fit_switch = fit.human || peak < 0.1 * measured || peak > 0.9 * measured;
   const std::size_t widest = WidestInstant(fit);
   grasp.quality.aperture = Aperture(fit.p_HF[widest], grasp.involved);
-  grasp.quality.aperture_time = static_cast<double>(widest) * track.dt / grasp.scales.T;
+  grasp.quality.aperture_time =
+      WidestStep(fit.p_HF, grasp.involved, widest) * track.dt / grasp.scales.T;
   if (fit.human) {
     grasp.opening = Preshape(fit, widest);
     fit.run.opening_bend = grasp.opening_bend = OpeningBend(fit, widest, grasp.opening);

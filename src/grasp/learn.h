@@ -31,9 +31,9 @@ struct LearnOptions {
   int basis_functions = 20;  // of the DMP
 };
 
-// Throws Error (one line) if the demonstration has too little to learn from: no thumb, no other
-// involved finger, no movement.
-Grasp LearnGrasp(const Demonstration& demonstration, const LearnOptions& options);
+// The hand is steadied first (demonstration/steady_hand.h). Throws Error (one line) if the
+// demonstration has too little to learn from: no thumb, no other involved finger, no movement.
+Grasp LearnGrasp(const Demonstration& shown, const LearnOptions& options);
 
 // Tips of a relaxed right hand in H, m, for a hand length of 0.189 m.
 PerFinger<Eigen::Vector3d> DefaultRelaxedTips();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "base/error.h"
 #include "motion/smoothing.h"
@@ -77,26 +76,6 @@ std::vector<Vector3d> Smooth(const Signal& signal, double noise, double period,
   std::vector<Vector3d> out;
   for (Eigen::Index n = 0; n < smooth.x.rows(); ++n) out.push_back(smooth.x.row(n).transpose());
   return out;
-}
-
-// Drops samples beside a gap that the curve through all others misses by far: where a finger comes
-// back into sight its label is least certain, and one wrong place there bends the whole bridge.
-Signal WithoutWildEdges(Signal signal, double noise, double period) {
-  constexpr double kGap = 2.5;  // periods
-  const double limit = std::max(0.015, kOutlier * noise);
-  for (std::size_t k = 1; k + 1 < signal.t.size() && signal.t.size() > kEnough; ++k) {
-    const double before = signal.t[k] - signal.t[k - 1], after = signal.t[k + 1] - signal.t[k];
-    if (std::max(before, after) < kGap * period) continue;
-    const auto at = static_cast<std::ptrdiff_t>(k);
-    Signal others = signal;
-    others.t.erase(others.t.begin() + at);
-    others.x.erase(others.x.begin() + at);
-    const VectorXd time = VectorXd::Constant(1, signal.t[k]);
-    if ((Smooth(others, noise, period, time).front() - signal.x[k]).norm() <= limit) continue;
-    signal = std::move(others);
-    --k;
-  }
-  return signal;
 }
 
 // The orientation of the hand: smoothed as rotation vectors about a middle one, which is safe as
@@ -216,19 +195,15 @@ HandTrack MakeHandTrack(const Demonstration& demonstration, double most_hand_cut
   for (int i = 0; i < kNumFingers; ++i) {
     if (!track.observed[i]) continue;
     Signal p_HF;
-    for (std::size_t k = 0; k < tips[i].t.size(); ++k) {
-      const double t = tips[i].t[k];
-      p_HF.t.push_back(t);
-      p_HF.x.push_back(Between(track.X_WH, (t - track.t0) / track.dt).inverse() * tips[i].x[k]);
-    }
-    const double noise = Noise(p_HF);
-    p_HF = WithoutWildEdges(std::move(p_HF), noise, period);
     std::size_t row = 0;
-    for (std::size_t k = 0; k < p_HF.t.size(); ++k) {
-      while (track.sample_t[row] < p_HF.t[k] - track.t0) ++row;
-      track.sample_p_HF[row][i] = p_HF.x[k];
+    for (std::size_t k = 0; k < tips[i].t.size(); ++k) {
+      const double t = tips[i].t[k] - track.t0;
+      p_HF.t.push_back(tips[i].t[k]);
+      p_HF.x.push_back(Between(track.X_WH, t / track.dt).inverse() * tips[i].x[k]);
+      while (track.sample_t[row] < t) ++row;
+      track.sample_p_HF[row][i] = p_HF.x.back();
     }
-    const auto smooth = Smooth(p_HF, noise, period, times);
+    const auto smooth = Smooth(p_HF, Noise(p_HF), period, times);
     for (std::size_t n = 0; n < smooth.size(); ++n) track.p_HF[n][i] = smooth[n];
   }
   return track;
