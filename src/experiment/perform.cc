@@ -9,6 +9,7 @@
 #include "control/grip.h"
 #include "experiment/arm_reference.h"
 #include "experiment/trial_watch.h"
+#include "kinematics/mirror.h"
 #include "sim/model_index.h"
 
 namespace springgrasp {
@@ -52,25 +53,25 @@ GripTask Task(const GraspPlan& plan, const PerformOptions& options) {
 class Performer {
  public:
   Performer(Simulation& simulation, const RobotIo& robot, const std::string& object,
-            const KinematicTree& hand, const KinematicTree& arm, const GraspPlan& plan,
-            const PerformOptions& options, const StepObserver& observer)
+            const RobotBody& body, const GraspPlan& plan, const PerformOptions& options,
+            const StepObserver& observer)
       : simulation_(simulation),
         robot_(robot),
         object_name_(object),
         object_(IdOf(simulation.model(), mjOBJ_BODY, object)),
-        hand_(hand),
-        arm_(arm),
+        mirrored_(body.mirrored),
+        arm_(body.arm.tree),
         plan_(plan),
         options_(options),
         criteria_(options.criteria),
         observer_(observer),
-        tip_frames_(TipFrames(hand)),
+        tip_frames_(TipFrames(body.hand.tree)),
         nominal_hand_(robot.layout()),
         drives_(options.pneumatics, simulation.timestep(), options.actuation),
-        grip_(BelievedHand(robot.layout(), options), hand, tip_frames_, Task(plan, options),
-              options.grip.settings),
+        grip_(BelievedHand(robot.layout(), options), body.hand.tree, tip_frames_,
+              Task(plan, options), options.grip.settings),
         watch_(simulation, robot, object_, criteria_, performance_) {
-    arm_frame_ = arm.FrameIndex("hand_r_H");
+    arm_frame_ = arm_.FrameIndex("hand_r_H");
   }
 
   Performance Run() {
@@ -144,6 +145,7 @@ class Performer {
     const HandLoad load = watch_.Load();
     for (int f = 0; f < kNumFingers; ++f) {
       sample.p_WF[f] = robot_.Fingertip(simulation_, f);
+      sample.p_WF_planned[f] = planned_ * PlannedTip(sample_of_plan_, f);
       sample.normal[f] = load.normal[f];
     }
     sample.palm_normal = load.palm_normal;
@@ -161,6 +163,11 @@ class Performer {
     ArmTarget target;
     target.q = q;
     return target;
+  }
+
+  // In H.
+  Eigen::Vector3d PlannedTip(std::size_t sample, int finger) const {
+    return plan_.X_WH[sample].inverse() * plan_.p_WF[sample][finger];
   }
 
   // Of the reach at time t, between its samples.
@@ -198,6 +205,7 @@ class Performer {
     for (long i = 0; i < steps; ++i) {
       const double t = static_cast<double>(i) * simulation_.timestep();
       planned_ = PlannedPose(t + simulation_.timestep());
+      sample_of_plan_ = std::min(plan_.arm.size() - 1, static_cast<std::size_t>(t / plan_.dt));
       if (!Step(ArmReferenceAt(plan_.arm, plan_.dt, t), HandReferenceAt(plan_.hand, plan_.dt, t),
                 t < plan_.T ? GripStage::kFree : GripStage::kClosing, 0)) {
         return false;
@@ -206,12 +214,11 @@ class Performer {
       arm_sum += (X_WH.translation() - planned_.translation()).squaredNorm();
       if (t > kLateReach * plan_.T) performance_.late_reach.Add(X_WH, planned_);
       if (t > plan_.T) continue;
-      const std::size_t k = std::min(plan_.arm.size() - 1, static_cast<std::size_t>(t / plan_.dt));
       for (int f = 0; f < kNumFingers; ++f) {
         if (!plan_.involved[f]) continue;
-        finger_sum += (X_WH.inverse() * robot_.Fingertip(simulation_, f) -
-                       planned_.inverse() * plan_.p_WF[k][f])
-                          .squaredNorm();
+        finger_sum +=
+            (X_WH.inverse() * robot_.Fingertip(simulation_, f) - PlannedTip(sample_of_plan_, f))
+                .squaredNorm();
         ++fingers;
       }
     }
@@ -267,6 +274,7 @@ class Performer {
     std::vector<Pose> X_WB;
     ForwardKinematics(arm_, plan_.lift.back(), X_WB);
     planned_ = FramePose(arm_, X_WB, arm_frame_);
+    if (mirrored_) planned_ = MirroredBodyPose(planned_);
     const double quiet = 0.5;  // s, let the lift die out before creep is measured
     Eigen::Vector3d p_HO_quiet = watch_.ObjectInHand().translation();
     for (long i = 0; i < StepsFor(criteria_.hold); ++i) {
@@ -348,7 +356,8 @@ class Performer {
   const RobotIo& robot_;
   const std::string object_name_;
   const int object_;
-  const KinematicTree &hand_, &arm_;
+  const bool mirrored_;
+  const KinematicTree& arm_;
   const GraspPlan& plan_;
   const PerformOptions& options_;
   const TrialCriteria& criteria_;
@@ -362,6 +371,7 @@ class Performer {
   Performance performance_;
   TrialWatch watch_;  // writes into performance_, so it stands after it
   Pose planned_ = Pose::Identity();
+  std::size_t sample_of_plan_ = 0;
   HandVector hand_planned_;
   struct {
     int count = 0;
@@ -373,9 +383,9 @@ class Performer {
 }  // namespace
 
 Performance Perform(Simulation& simulation, const RobotIo& robot, const std::string& object,
-                    const KinematicTree& hand, const KinematicTree& arm, const GraspPlan& plan,
-                    const PerformOptions& options, const StepObserver& observer) {
-  return Performer(simulation, robot, object, hand, arm, plan, options, observer).Run();
+                    const RobotBody& body, const GraspPlan& plan, const PerformOptions& options,
+                    const StepObserver& observer) {
+  return Performer(simulation, robot, object, body, plan, options, observer).Run();
 }
 
 }  // namespace springgrasp

@@ -12,8 +12,8 @@
 #include "experiment/grasp_plan.h"
 #include "experiment/limit_watch.h"
 #include "experiment/phases.h"
+#include "experiment/robot_body.h"
 #include "experiment/verdict.h"
-#include "kinematics/kinematic_tree.h"
 #include "sim/pneumatics.h"
 #include "sim/robot_io.h"
 #include "sim/simulation.h"
@@ -44,7 +44,7 @@ struct TrajectorySample {
   double t = 0;
   Phase phase = Phase::kSettle;
   Pose X_WO, X_WH, X_WH_planned;
-  PerFinger<Eigen::Vector3d> p_WF;
+  PerFinger<Eigen::Vector3d> p_WF, p_WF_planned;
   PerFinger<double> normal;                          // N
   double palm_normal = 0;                            // N
   RobotState state;                                  // mass and bias left out of files
@@ -87,10 +87,11 @@ struct Performance {
 using StepObserver = std::function<void(const Simulation&, Phase)>;
 
 // Runs settle, reach, grip, lift, hold, disturb and after on `simulation` (placed at its start),
-// whose object is the body `object`. `hand` is the kinematic tree of the hand with root H.
+// whose object is the body `object`. `robot` and `body` belong to one side; the plan's poses are
+// those of the world, its angles the side's.
 // Never throws for what physics does: divergence is an event.
 Performance Perform(Simulation& simulation, const RobotIo& robot, const std::string& object,
-                    const KinematicTree& hand, const KinematicTree& arm, const GraspPlan& plan,
-                    const PerformOptions& options, const StepObserver& observer = {});
+                    const RobotBody& body, const GraspPlan& plan, const PerformOptions& options,
+                    const StepObserver& observer = {});
 
 }  // namespace springgrasp

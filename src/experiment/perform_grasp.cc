@@ -11,6 +11,7 @@
 #include "experiment/reach_report.h"
 #include "experiment/trajectory_csv.h"
 #include "experiment/trial_film.h"
+#include "kinematics/mirror.h"
 #include "sim/scene_builder.h"
 
 namespace springgrasp {
@@ -93,8 +94,9 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene,
   BuildOptions build;
   build.with_looks = false;
   Simulation simulation(BuildModel(scene, build));
-  const RobotIo robot(simulation.model());
-  const RobotBody body = MakeRobotBody(simulation);
+  const std::string side = GraspingSide(scene);
+  const RobotIo robot(simulation.model(), side);
+  const RobotBody body = MakeRobotBody(simulation, side);
   const Pose X_WO = ObjectStartPose(scene, 0);
   result.values["object_x"] = X_WO.translation().x();
   result.values["object_y"] = X_WO.translation().y();
@@ -103,12 +105,16 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene,
   if (options.believe_truth) believed.objects[0].believed = SceneBelief();
   PlanRequest request;
   request.object = BelieveObject(believed, 0);
+  if (body.mirrored) {
+    ThrowUnless(grasp.type != "lateral", "the left hand does not perform lateral grasps");
+    request.object.X_WO = MirroredObjectPose(request.object.X_WO);
+  }
   request.table_height = scene.table.height;
   request.table_edge = scene.table.position.y() - scene.table.size.y() / 2;
   request.arm_start = robot.Read(simulation).arm_q;
   request.criteria = options.criteria;
   request.object_centre = options.object_centre;
-  const PlanResult plan = PlanGrasp(body, grasp, request);
+  PlanResult plan = PlanGrasp(body, grasp, request);
   RecordPlan(plan, result);
   if (!plan.plan) {
     result.outcome = Outcome::kUnreachable;
@@ -118,6 +124,12 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene,
   }
   if (!options.motion.empty()) {
     WriteFileAtomically(options.motion, FormatFingertipMotion(plan.motion));
+  }
+  if (body.mirrored) {
+    for (Pose& X : plan.plan->X_WH) X = MirroredBodyPose(X);
+    for (auto& tips : plan.plan->p_WF) {
+      for (Eigen::Vector3d& p : tips) p = MirroredPoint(p);
+    }
   }
 
   robot.Place(plan.plan->arm.front(), plan.plan->hand.front(), simulation);
@@ -134,8 +146,8 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene,
                  FilmOptions{options.video, options.camera, options.annotate});
   }
   const Performance performance =
-      Perform(simulation, robot, scene.objects[0].name, body.hand.tree, body.arm.tree, *plan.plan,
-              perform, [&](const Simulation& now, Phase phase) {
+      Perform(simulation, robot, scene.objects[0].name, body, *plan.plan, perform,
+              [&](const Simulation& now, Phase phase) {
                 if (film) film->Look(now, phase);
               });
   if (film) film->Finish();

@@ -29,6 +29,9 @@ std::string FormatTrajectory(const std::vector<TrajectorySample>& trajectory,
   AppendPoseNames(text, "hand");
   AppendPoseNames(text, "hand_planned");
   for (const auto finger : kFingerNames) text += fmt::format(",{0}_x,{0}_y,{0}_z", finger);
+  for (const auto finger : kFingerNames) {
+    text += fmt::format(",{0}_planned_x,{0}_planned_y,{0}_planned_z", finger);
+  }
   for (const auto finger : kFingerNames) text += fmt::format(",{}_normal_n", finger);
   text += ",palm_normal_n";
   for (const auto joint : kArmJointNames) text += fmt::format(",arm_{}", joint);
@@ -46,6 +49,7 @@ std::string FormatTrajectory(const std::vector<TrajectorySample>& trajectory,
     Append(text, PoseToArray(s.X_WH));
     Append(text, PoseToArray(s.X_WH_planned));
     for (const Eigen::Vector3d& tip : s.p_WF) Append(text, tip);
+    for (const Eigen::Vector3d& tip : s.p_WF_planned) Append(text, tip);
     for (const double n : s.normal) text += fmt::format(",{:.4g}", n);
     text += fmt::format(",{:.4g}", s.palm_normal);
     Append(text, s.state.arm_q);

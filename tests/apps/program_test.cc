@@ -134,5 +134,16 @@ TEST(ProgressTest, SaysHowFarHowFastAndHowLong) {
   EXPECT_EQ(DescribeProgress(progress), "30/120  20.0 per minute  4:30 left  25 succeeded");
 }
 
+TEST(ProgramTest, InspectReachSaysWhetherEachObjectIsWithinReach) {
+  const ProgramResult result =
+      RunProgram("springgrasp inspect '" + SourceFolder() +
+                     "/scenes/power_cylinder.yaml' --reach -o reach.png && "
+                     "head -c 4 reach.png | tail -c 3; rm reach.png",
+                 ::testing::TempDir());
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, ::testing::HasSubstr("cylinder at (0.39, 0.52, 1.04): within reach"));
+  EXPECT_THAT(result.out, ::testing::EndsWith("PNG"));
+}
+
 }  // namespace
 }  // namespace springgrasp

@@ -1,5 +1,6 @@
 #include "experiment/perform_grasp.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -38,6 +39,30 @@ TEST(PerformGraspTest, TheHandWithAnOppositionJointRunsTheSameChain) {
   EXPECT_NE(result.outcome, Outcome::kError) << result.message;
   EXPECT_NE(result.outcome, Outcome::kDiverged) << result.message;
   EXPECT_NE(result.outcome, Outcome::kUnreachable) << result.message;
+}
+
+TEST(PerformGraspTest, TheLeftHandPerformsTheMirroredPowerGrasp) {
+  Trial trial;
+  trial.grasp = ReadGrasp(SourceFolder() + "/models/grasps/power.yaml");
+  trial.scene = ReadScene(SourceFolder() + "/scenes/power_cylinder_left.yaml");
+  const TrialResult result = trial.Run();
+  EXPECT_EQ(result.outcome, Outcome::kSuccess) << result.message;
+  EXPECT_LT(result.values.at("arm_late_error_mm"), 3);
+  EXPECT_LT(result.values.at("arm_late_error_deg"), 1.5);
+  EXPECT_LT(result.values.at("arm_hold_error_mm"), 3);
+}
+
+TEST(PerformGraspTest, APinchHoldsTheForceItChoseAndStaysBelowTheLimit) {
+  Trial trial;
+  trial.scene.objects[0].believed.friction = 0.25;
+  const TrialResult result = trial.Run();
+  ASSERT_EQ(result.outcome, Outcome::kSuccess) << result.message;
+  for (const char* finger : {"thumb", "index"}) {
+    const double target = result.values.at(fmt::format("force_target_{}_n", finger));
+    EXPECT_NEAR(result.values.at(fmt::format("force_hold_{}_n", finger)), target, 0.15 * target);
+    EXPECT_LT(result.values.at(fmt::format("largest_force_{}_n", finger)),
+              trial.scene.max_finger_force);
+  }
 }
 
 TEST(PerformGraspTest, SensorNoiseFollowsTheActuationStream) {

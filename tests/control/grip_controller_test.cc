@@ -1,0 +1,86 @@
+#include "control/grip_controller.h"
+
+#include <gtest/gtest.h>
+
+#include "control/toy_hand.h"
+
+namespace springgrasp {
+namespace {
+
+constexpr double kDt = 0.002;
+
+// A hand whose joints stand where they are put; its chambers follow the commands.
+struct Grip {
+  KinematicTree hand = ToyHand();
+  PneumaticHandModel model = PneumaticHandModel(DocumentedHand());
+  GripTask task;
+  RobotState state;
+  HandTarget reference;
+  explicit Grip(double force) {
+    task.involved = {true, true, false, false, false};
+    task.force = force;
+    task.max_force = 5;
+    state.hand_q = HandVector::Constant(11, 0.4);
+    state.hand_qd = state.hand_bias = HandVector::Zero(11);
+    for (int v = 0; v < kNumValves; ++v) {
+      state.pressure[v] = model.return_stiffness[v] * 0.6 / model.torque_per_bar[v];
+    }
+    reference.q = state.hand_q;
+  }
+  void Run(GripController& controller, GripStage stage, double duration) {
+    for (int i = 0; i < duration / kDt; ++i) {
+      const ValveVector u = controller.Control(state, reference, stage, kDt);
+      state.pressure += kDt / model.fill_time * (u - state.pressure);
+    }
+  }
+};
+
+TEST(GripControllerTest, AFingerThatIsStoppedIsFeltAndBothPressOnceAllAre) {
+  Grip grip(3);
+  GripController controller(grip.model, grip.hand, {0, 1, 2, 3, 4}, grip.task);
+  grip.Run(controller, GripStage::kFree, 0.5);
+  EXPECT_FALSE(controller.touching()[kThumb] || controller.touching()[kIndex]);
+  for (const int j : {1, 2, 3, 4}) grip.reference.q[j] = 0.6;  // held back at 0.4
+  grip.Run(controller, GripStage::kClosing, 0.5);
+  EXPECT_TRUE(controller.touching()[kThumb] && controller.touching()[kIndex]);
+  EXPECT_EQ(controller.target_force()[kThumb], 0);
+  grip.Run(controller, GripStage::kPressing, 1.5);
+  EXPECT_TRUE(controller.held());
+  EXPECT_NEAR(controller.target_force()[kThumb], 3, 1e-9);
+  EXPECT_NEAR(controller.target_force()[kIndex], 3, 1e-9);
+  EXPECT_EQ(controller.target_force()[kMiddle], 0);
+}
+
+TEST(GripControllerTest, WhatIsFeltOfTheForceBecomesWhatIsAskedFor) {
+  Grip grip(3);
+  GripController controller(grip.model, grip.hand, {0, 1, 2, 3, 4}, grip.task);
+  grip.Run(controller, GripStage::kFree, 0.5);
+  grip.Run(controller, GripStage::kPressing, 4);
+  const PerFinger<double> felt = controller.SensedForce(grip.state);
+  EXPECT_NEAR((felt[kThumb] + felt[kIndex]) / 2, 3, 0.05);
+}
+
+TEST(GripControllerTest, FingersThatComeCloserThanTheyHeldRegripHarderUpToTheLimit) {
+  Grip grip(3);
+  GripController controller(grip.model, grip.hand, {0, 1, 2, 3, 4}, grip.task);
+  grip.Run(controller, GripStage::kFree, 0.5);
+  grip.Run(controller, GripStage::kPressing, 3);
+  ASSERT_TRUE(controller.held());
+  EXPECT_EQ(controller.regrips(), 0);
+  double last = controller.target_force()[kThumb];
+  for (int slip = 1; slip <= 4; ++slip) {
+    // The way in which the pads come closer, two millimetres of it.
+    const HandVector toward =
+        ClosingDirections(grip.hand, {0, 1, 2, 3, 4}, grip.state.hand_q, grip.task.involved);
+    grip.state.hand_q += 0.02 * toward;
+    grip.Run(controller, GripStage::kPressing, 0.3);
+    EXPECT_EQ(controller.regrips(), slip);
+    const double now = controller.target_force()[kThumb];
+    EXPECT_TRUE(now > last || now == grip.task.max_force);
+    EXPECT_LE(now, grip.task.max_force);
+    last = now;
+  }
+}
+
+}  // namespace
+}  // namespace springgrasp
