@@ -10,6 +10,8 @@
 namespace springgrasp {
 namespace {
 
+constexpr double kFastest = 1000;  // m/s, rad/s
+
 constexpr std::array<const char*, mjNWARNING> kWarningNames = {
     "inertia matrix is singular",    "contact list is full",     "constraint list is full",
     "list of drawn geoms is full",   "bad number in a position", "bad number in a velocity",
@@ -79,6 +81,12 @@ bool Simulation::Check() {
   }
   for (int i = 0; i < model_->nq && !divergence_; ++i) {
     if (!std::isfinite(data_->qpos[i])) divergence_ = Divergence{"non-finite position", time()};
+  }
+  // Long before its numbers are bad for MuJoCo, a state is no mechanics any more.
+  for (int i = 0; i < model_->nv && !divergence_; ++i) {
+    if (std::abs(data_->qvel[i]) > kFastest) {
+      divergence_ = Divergence{"speed beyond 1000 m/s or rad/s", time()};
+    }
   }
   return !divergence_;
 }
