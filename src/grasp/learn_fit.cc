@@ -178,14 +178,16 @@ double Reproduce(const FitProblem& problem, const FingerRun& run, FitResult& res
     }
   }
   result.aperture_rmse = std::sqrt(aperture_sum / std::max(1, apertures));
+  std::vector<Fingertips> reach = motion->p_HF;
+  reach.resize(problem.p_HF.size());  // to T
   std::size_t widest = 0;
-  for (std::size_t n = 0; n < problem.p_HF.size(); ++n) {
-    const double aperture = Aperture(motion->p_HF[n], run.involved);
+  for (std::size_t n = 0; n < reach.size(); ++n) {
+    const double aperture = Aperture(reach[n], run.involved);
     if (aperture <= result.aperture) continue;
     result.aperture = aperture;
     widest = n;
   }
-  result.aperture_time = WidestStep(motion->p_HF, run.involved, widest) * problem.dt / run.T;
+  result.aperture_time = WidestStep(reach, run.involved, widest) * problem.dt / run.T;
   const double weight = 0.1 * count;
   for (int i = 0; i < kNumFingers; ++i) {
     if (result.samples[i] > 0) result.rmse[i] = std::sqrt(sum[i] / result.samples[i]);
