@@ -68,9 +68,9 @@ TEST(OutcomesTest, WhatCreepsIsDroppedInTheHold) {
   ExpectOutcome(trial, Outcome::kDroppedHold, "hold");
 }
 
-TEST(OutcomesTest, ASlipperyBallIsShakenOff) {
+TEST(OutcomesTest, AForceOfFifteenTimesItsWeightTearsTheBallOff) {
   Trial trial;
-  trial.object().friction = 0.2;
+  trial.options.criteria.force_per_mass = 150;  // N/kg
   ExpectOutcome(trial, Outcome::kDroppedDisturb, "disturb");
 }
 
