@@ -170,7 +170,11 @@ Grasp BlendGrasps(const Grasp& from, const Grasp& to, double s, const Shape& sha
     grasp.observed[i] = a.observed[i] || b.observed[i];
     grasp.involved[i] = a.involved[i] || b.involved[i];
     if (grasp.involved[i]) {
-      grasp.share[i] = Mix(a.involved[i] ? a.share[i] : 0.0, b.involved[i] ? b.share[i] : 0.0, s);
+      // A small share moves a finger that nothing else holds as far as a large one, given time: it
+      // comes and goes without a slope.
+      const double grown = s * s * (3 - 2 * s);
+      grasp.share[i] =
+          Mix(a.involved[i] ? a.share[i] : 0.0, b.involved[i] ? b.share[i] : 0.0, grown);
     }
     if (a.involved[i] && b.involved[i]) {
       grasp.opening[i] = Mix(a.opening[i], b.opening[i], s);

@@ -140,7 +140,7 @@ TEST(BlendGrasps, FingertipsNeverCrossAndTheHumanHandReachesThem) {
         ends.off = std::max(ends.off, along.off);
       }
       // In between no closer than where the path begins or ends, and each on its side of the next.
-      EXPECT_GT(worst.nearest, std::min(0.010, ends.nearest - 0.0015));
+      EXPECT_GT(worst.nearest, std::min(0.008, ends.nearest - 0.0015));
       EXPECT_GT(worst.order, ends.order - 0.006);
       // A lateral grasp of a ball is not easy for a hand to begin with.
       const bool lateral = a.grasp.type == "lateral" || b.grasp.type == "lateral";
