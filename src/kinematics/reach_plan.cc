@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "kinematics/reach_path.h"
-#include "kinematics/swivel_path.h"
 #include "motion/minimum_jerk.h"
 
 namespace springgrasp {
@@ -113,31 +112,6 @@ std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRe
   return goal;
 }
 
-// The way through poses that come back to where they began, joints too: without a jump if there is
-// such a way, else each pose by itself, from the same posture.
-ArmPath ShakePath(const Arm& arm, const std::vector<Pose>& X_WH, const Eigen::VectorXd& q,
-                  double dt) {
-  if (const std::optional<ArmGeometry> geometry = GeometryOf(arm)) {
-    SwivelPathRequest request;
-    request.X_WH = X_WH;
-    request.dt = dt;
-    request.start = request.goal = q;
-    request.margin = 0;
-    const ArmPath smooth = PlanSwivelPath(*geometry, request);
-    if (smooth.complete) return smooth;
-  }
-  ArmIkOptions ik;
-  ik.limit_weight = 0;
-  ArmPath path;
-  for (const Pose& X : X_WH) {
-    const auto next = SolveArmIk(arm, X, q, ik);
-    if (!next) return path;
-    path.q.push_back(*next);
-  }
-  path.complete = true;
-  return path;
-}
-
 // The whole path to one goal; false with a reason in `plan`.
 bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request,
               const ReachOptions& options, const Goal& goal, ReachPlan& plan) {
@@ -213,12 +187,18 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
           options.shake * envelope * std::sin(2 * std::numbers::pi * options.shake_frequency * t);
       X_shake.push_back(Moved(X_lift.back(), s * Eigen::Vector3d::Unit(axis)));
     }
-    const ArmPath shake = ShakePath(arm, X_shake, lift.q.back(), request.dt);
-    if (!shake.complete) {
-      plan.reason = "the lifted arm cannot be shaken as far as asked";
-      return false;
+    // Every pose from the same posture, so that the arm comes back to it.
+    ArmIkOptions ik;
+    ik.limit_weight = 0;
+    plan.shake[axis].clear();
+    for (const Pose& X : X_shake) {
+      const auto q = SolveArmIk(arm, X, lift.q.back(), ik);
+      if (!q) {
+        plan.reason = "the lifted arm cannot be shaken as far as asked";
+        return false;
+      }
+      plan.shake[axis].push_back(*q);
     }
-    plan.shake[axis] = shake.q;
   }
   plan.arm = path.q;
   plan.lift = lift.q;

@@ -30,7 +30,8 @@ TEST(ShippedScenesTest, StandStillWhileTheArmIsHeld) {
     SCOPED_TRACE(file);
     const Scene scene = ReadScene(file);
     Simulation sim(BuildModel(scene));
-    const RobotIo io(sim.model());
+    const bool left = std::count(scene.active.begin(), scene.active.end(), "left_hand") > 0;
+    const RobotIo io(sim.model(), left ? "l" : "r");
     const ArmVector start = io.Read(sim).arm_q;
     for (int k = 0; k < 500; ++k) {
       const RobotState state = io.Read(sim);
