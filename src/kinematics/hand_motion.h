@@ -16,9 +16,9 @@ namespace springgrasp {
 
 // All series at the same even steps, from t = 0.
 struct HandMotionRequest {
-  double dt = 0.005;                             // s
-  double T = 1;                                  // s, end of the reach: contact
-  double t_switch = 0.5;                         // s, closing begins (Eq. (7))
+  double dt = 0.005;                     // s
+  double T = 1;                          // s, end of the reach: contact
+  double t_switch = 0.5;                 // s, closing begins (Eq. (7))
   std::vector<Eigen::VectorXd> q_human;  // MMM hand, rad (SolveHandMotion)
   // Where the robot's tips belong when they near the object, in the ROBOT's H, m: the human ones
   // about the object as the robot holds it, X_HO(robot) X_OH(human, T) p_HF(t).

@@ -1,6 +1,6 @@
 // Levenberg-Marquardt for least squares under bounds: the solver the paper names for Eq. (15)-(16),
-// shared by hand inverse kinematics, contact postures and spring estimation. (The mapping itself has
-// one of fixed size, in hand_mapping.cc.)
+// shared by hand inverse kinematics, contact postures and spring estimation. (The mapping itself
+// has one of fixed size, in hand_mapping.cc.)
 #pragma once
 
 #include <Eigen/Core>
