@@ -111,7 +111,7 @@ TEST(SimulationTest, SameAsPlainStepping) {
 
 TEST(SimulationTest, DivergenceIsAStateNotACrash) {
   Simulation sim(BuildModel(TestScene()));
-  sim.mutable_data().qvel[0] = 1e12;
+  sim.mutable_data().qvel[0] = std::numeric_limits<double>::quiet_NaN();
   sim.Step(10);
   ASSERT_TRUE(sim.diverged());
   EXPECT_THAT(sim.diverged()->warning, ::testing::HasSubstr("bad number"));
@@ -124,6 +124,14 @@ TEST(SimulationTest, DivergenceIsAStateNotACrash) {
   sim.SetControl("arm_r_elbow", std::numeric_limits<double>::quiet_NaN());
   sim.Step(2);
   EXPECT_TRUE(sim.diverged());
+}
+
+TEST(SimulationTest, ImpossibleSpeedsAreDivergence) {
+  Simulation sim(BuildModel(TestScene()));
+  sim.mutable_data().qvel[0] = 1e5;
+  sim.Step();
+  ASSERT_TRUE(sim.diverged());
+  EXPECT_THAT(sim.diverged()->warning, ::testing::HasSubstr("1000 m/s"));
 }
 
 TEST(SimulationTest, EngineErrorsAreCaughtInAStep) {
