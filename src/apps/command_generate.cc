@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "apps/command.h"
-#include "base/error.h"
 #include "base/files.h"
 #include "grasp/blend.h"
 #include "grasp/generate.h"
@@ -29,7 +28,6 @@ int Generate(const Options& options) {
   GenerateOptions generate;
   constexpr std::string_view kMesh = "mesh:";
   if (options.shape.starts_with(kMesh)) {
-    ThrowUnless(options.blend.empty(), "--blend: grasps are blended on a primitive, not on a mesh");
     generate.mesh = std::make_shared<const TriangleMesh>(
         CentredMesh(ReadObjectMesh(options.shape.substr(kMesh.size()))));
     generate.shape = BoxAround(*generate.mesh);
@@ -40,6 +38,7 @@ int Generate(const Options& options) {
   generate.yaw = options.yaw;
   generate.object_centre = options.centre;
   if (!options.blend.empty()) {
+    // On a mesh two grasps meet as they do on the box around it; its surface is met afterwards.
     grasp = BlendGrasps(grasp, ReadGrasp(options.blend), options.part, generate.shape,
                         generate.tip_radius);
   }

@@ -17,8 +17,9 @@ namespace {
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kCommands = {"run",    "observe", "learn", "generate", "perform",
-                                            "status", "export",  "check", "model",    "inspect"};
+const std::vector<std::string> kCommands = {"run",     "replay",    "observe", "learn",  "generate",
+                                            "library", "recognise", "perform", "status", "export",
+                                            "check",   "model",     "inspect"};
 
 TEST(ProgramTest, EveryCommandIsListedAndShowsAnExampleOfItself) {
   const TemporaryFolder folder;
@@ -30,6 +31,27 @@ TEST(ProgramTest, EveryCommandIsListedAndShowsAnExampleOfItself) {
     EXPECT_EQ(own.exit_code, 0);
     EXPECT_THAT(own.out, HasSubstr("build/release/bin/springgrasp " + command + " "));
   }
+}
+
+TEST(ProgramTest, OnAMeshTheBlendOfTwoGraspsBeginsAndEndsWithThem) {
+  const TemporaryFolder folder;
+  const std::string grasps = SourceFolder() + "/models/grasps/";
+  const std::string object =
+      " --object '0.4 0.5 1' --shape mesh:" + SourceFolder() + "/models/objects/meshes/apple.obj";
+  const auto generated = [&](const std::string& arguments) {
+    const ProgramResult result = RunProgram(
+        "springgrasp generate " + grasps + arguments + object + " -o motion.csv", folder / ".");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const std::string csv = ReadFile(folder / "motion.csv");
+    return std::count(csv.begin(), csv.end(), '\n');
+  };
+  const auto pinch = generated("pinch.yaml"), power = generated("power.yaml");
+  const std::string blend = "pinch.yaml --blend " + grasps + "power.yaml --part ";
+  EXPECT_EQ(generated(blend + "0"), pinch);
+  EXPECT_EQ(generated(blend + "1"), power);
+  const auto between = generated(blend + "0.5");
+  EXPECT_GT(between, std::min(pinch, power));
+  EXPECT_LT(between, std::max(pinch, power));
 }
 
 TEST(ProgramTest, VersionNamesProgramMujocoAndRenderer) {
