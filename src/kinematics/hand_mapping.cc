@@ -84,12 +84,19 @@ class MappingProblem {
     return Valves(q).cwiseMax(lower).cwiseMin(upper);
   }
 
-  // S' of Eq. (15) with our own rows: the sum of squares |r|^2; A = J'J and g = J'r where wanted.
-  double Evaluate(const ValveAngles& x, ValveMatrix* A, ValveAngles* g) {
+  // S' of Eq. (15) with our own rows: the sum of squares |r|^2; A = J'J and g = J'r where wanted,
+  // and the rest of the second derivatives, B = sum of r times its own.
+  struct Curvature {
+    ValveMatrix A, B;
+  };
+  double Evaluate(const ValveAngles& x, Curvature* curvature, ValveAngles* g) {
     Joints(x);
     hand_.Move(x);
-    if (A != nullptr) {
+    ValveMatrix* A = nullptr;
+    if (curvature != nullptr) {
+      A = &curvature->A;
       A->setZero();
+      curvature->B.setZero();
       for (int v = num_valves(); v < kMostValves; ++v) (*A)(v, v) = 1;
     }
     if (g != nullptr) g->setZero();
@@ -105,7 +112,7 @@ class MappingProblem {
       const RobotHand::Finger& finger = robot_.fingers[f];
       add(kJointScale, finger.j0, target_.sigma[f][0]);
       add(kJointScale, finger.j1, target_.sigma[f][1]);
-      AddTip(f, A, g, cost);
+      AddTip(f, curvature, g, cost);
     }
     if (robot_.palm >= 0) add(options_.palm_weight / kPi, robot_.palm, options_.palm_wanted);
     if (robot_.opposition >= 0) add(kJointScale, robot_.opposition, target_.opposition);
@@ -130,7 +137,7 @@ class MappingProblem {
   }
 
   // The position term of a finger, by the joints between its tip and H.
-  void AddTip(int f, ValveMatrix* A, ValveAngles* g, double& cost) {
+  void AddTip(int f, Curvature* curvature, ValveAngles* g, double& cost) {
     constexpr int kMostJoints = 8;
     const RobotHand::Finger& finger = robot_.fingers[f];
     const Eigen::Vector3d e = TipError(f);
@@ -139,20 +146,28 @@ class MappingProblem {
     cost += weight * squared_tip_errors_[f];
     if (g == nullptr) return;
     const Eigen::Vector3d p_HF = e + target_.p_HF[f];
-    std::array<Eigen::Vector3d, kMostJoints> column;
+    std::array<Eigen::Vector3d, kMostJoints> axis, column;
     std::array<int, kMostJoints> valve;
     int count = 0;
     for (int b = robot_.tree.frames[finger.tip].node; b >= 0; b = hand_.body(b).parent) {
       const FastHand::Body& body = hand_.body(b);
       if (body.valve < 0 || count == kMostJoints) continue;
-      column[count] = (body.R_HB * body.axis).cross(p_HF - body.p_HB);
+      axis[count] = body.R_HB * body.axis;
+      column[count] = axis[count].cross(p_HF - body.p_HB);
       valve[count++] = body.valve;
     }
     for (int i = 0; i < count; ++i) {
       (*g)[valve[i]] += weight * column[i].dot(e);
-      if (A == nullptr) continue;
-      for (int j = 0; j < count; ++j) {
-        (*A)(valve[i], valve[j]) += weight * column[i].dot(column[j]);
+      if (curvature == nullptr) continue;
+      // d2p / dq_i dq_j: what the joint nearer to the tip does, turned by the other.
+      for (int j = 0; j <= i; ++j) {
+        const double a = weight * column[i].dot(column[j]);
+        const double b = weight * e.dot(axis[i].cross(column[j]));
+        curvature->A(valve[i], valve[j]) += a;
+        curvature->B(valve[i], valve[j]) += b;
+        if (j == i) continue;
+        curvature->A(valve[j], valve[i]) += a;
+        curvature->B(valve[j], valve[i]) += b;
       }
     }
   }
@@ -212,47 +227,56 @@ bool SolveFixed(const ValveMatrix& A, const ValveAngles& b, ValveAngles& y) {
   return true;
 }
 
-// Projected Levenberg-Marquardt as in levenberg_marquardt.h, on the normal equations alone.
+// Projected Levenberg-Marquardt as in levenberg_marquardt.h, on the normal equations alone, with
+// the whole second derivatives where these are positive definite: where a tip is out of reach,
+// Gauss-Newton takes tens of steps.
 MappingSolution Minimize(MappingProblem& problem, const ValveAngles& start, int max_iterations) {
   constexpr double kStep = 3e-5;      // rad, where it ends
   constexpr double kGradient = 1e-9;  // of the cost, per rad
   MappingSolution best;
   best.x = start;
-  ValveMatrix A, damped, A_trial;
+  MappingProblem::Curvature now, trial;
+  ValveMatrix gauss, whole;
   ValveAngles g, g_trial;
-  best.cost = problem.Evaluate(best.x, &A, &g);
+  best.cost = problem.Evaluate(best.x, &now, &g);
   best.squared_tip_errors = problem.squared_tip_errors();
   double damping = 1e-4, growth = 2;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     double largest = 0;
-    damped = A;
+    gauss = now.A;
+    whole = now.A + now.B;
     ValveAngles slope = g;
     for (int i = 0; i < kMostValves; ++i) {
       const bool held = (best.x[i] <= problem.lower[i] && slope[i] > 0) ||
                         (best.x[i] >= problem.upper[i] && slope[i] < 0);
       if (held) {
         slope[i] = 0;
-        damped.row(i).setZero();
-        damped.col(i).setZero();
-        damped(i, i) = 1;
+        for (ValveMatrix* m : {&gauss, &whole}) {
+          m->row(i).setZero();
+          m->col(i).setZero();
+          (*m)(i, i) = 1;
+        }
       }
       largest = std::max(largest, std::abs(slope[i]));
     }
     if (largest < kGradient) return best;
-    const ValveAngles diagonal = damped.diagonal();
+    const ValveAngles diagonal = gauss.diagonal(), whole_diagonal = whole.diagonal();
     for (int attempt = 0;; ++attempt) {
       if (attempt == 30) return best;
-      damped.diagonal() = (1 + damping) * diagonal;
+      whole.diagonal() = whole_diagonal + damping * diagonal;
       ValveAngles step;
-      if (!SolveFixed(damped, slope, step)) return best;
+      if (!SolveFixed(whole, slope, step)) {
+        gauss.diagonal() = (1 + damping) * diagonal;
+        if (!SolveFixed(gauss, slope, step)) return best;
+      }
       const ValveAngles x = (best.x - step).cwiseMax(problem.lower).cwiseMin(problem.upper);
       if (!((x - best.x).cwiseAbs().maxCoeff() > kStep)) return best;
-      const double cost = problem.Evaluate(x, &A_trial, &g_trial);
+      const double cost = problem.Evaluate(x, &trial, &g_trial);
       if (cost < best.cost) {
         best.x = x;
         best.cost = cost;
         best.squared_tip_errors = problem.squared_tip_errors();
-        A = A_trial;
+        now = trial;
         g = g_trial;
         damping = std::max(damping / 10, 1e-12);
         growth = 2;
@@ -286,35 +310,6 @@ MappingResult MapFrame(const RobotHand& robot, const MappingTarget& target,
 }
 
 }  // namespace
-
-MappingTarget TargetFromHuman(const HumanHand& human, const Eigen::VectorXd& q_human,
-                              const RobotHand& robot) {
-  MappingTarget target;
-  target.lambda.fill(1);
-  if (robot.opposition >= 0) {
-    target.opposition =
-        std::clamp(kPi / 2 - OppositionOf(human, q_human), robot.tree.lower[robot.opposition],
-                   robot.tree.upper[robot.opposition]);
-  }
-  const PerFinger<FlexionAngles> flexion = FlexionOf(human, q_human);
-  std::vector<Pose> X_human, X_robot;
-  ForwardKinematics(human.tree, q_human, X_human);
-  ForwardKinematics(robot.tree, robot.open, X_robot);
-  for (int f = 0; f < kNumFingers; ++f) {
-    const RobotHand::Finger& finger = robot.fingers[f];
-    const Eigen::Vector2d wanted =
-        Eigen::Vector2d(flexion[f].proximal, flexion[f].distal) + finger.flexion_offset;
-    target.sigma[f][0] =
-        std::clamp(wanted[0], robot.tree.lower[finger.j0], robot.tree.upper[finger.j0]);
-    target.sigma[f][1] =
-        std::clamp(wanted[1], robot.tree.lower[finger.j1], robot.tree.upper[finger.j1]);
-    const Eigen::Vector3d reach = FramePose(human.tree, X_human, human.tip[f]).translation() -
-                                  X_human[human.base[f]].translation();
-    target.p_HF[f] =
-        X_robot[finger.base].translation() + finger.length / human.length[f] * (robot.R_HA * reach);
-  }
-  return target;
-}
 
 MappingResult MapHand(const RobotHand& robot, const MappingTarget& target,
                       const Eigen::VectorXd& previous, const MappingOptions& options) {
