@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <exception>
 #include <numbers>
 #include <string>
 
@@ -14,6 +13,7 @@
 #include "kinematics/arm_ik_numeric.h"
 #include "kinematics/swivel_path.h"
 #include "motion/minimum_jerk.h"
+#include "statistics_main.h"
 
 namespace springgrasp {
 namespace {
@@ -149,11 +149,4 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace springgrasp
 
-int main(int argc, char** argv) {
-  try {
-    return springgrasp::Main(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return StatisticsMain(argc, argv, springgrasp::Main); }

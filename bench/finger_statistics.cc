@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <exception>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "sim/pneumatics.h"
 #include "sim/robot_io.h"
 #include "sim/scene_builder.h"
+#include "statistics_main.h"
 
 namespace springgrasp {
 namespace {
@@ -307,11 +307,4 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace springgrasp
 
-int main(int argc, char** argv) {
-  try {
-    return springgrasp::Main(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return StatisticsMain(argc, argv, springgrasp::Main); }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <exception>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
@@ -18,6 +17,7 @@
 #include "sim/model_index.h"
 #include "sim/mujoco_handles.h"
 #include "sim/scene_builder.h"
+#include "statistics_main.h"
 
 namespace springgrasp {
 namespace {
@@ -104,11 +104,4 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace springgrasp
 
-int main(int argc, char** argv) {
-  try {
-    return springgrasp::Main(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return StatisticsMain(argc, argv, springgrasp::Main); }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <exception>
 #include <map>
 #include <string>
 
@@ -14,6 +13,7 @@
 #include "experiment/trial_result.h"
 #include "grasp/grasp.h"
 #include "sim/scene_builder.h"
+#include "statistics_main.h"
 
 namespace springgrasp {
 namespace {
@@ -56,11 +56,4 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace springgrasp
 
-int main(int argc, char** argv) {
-  try {
-    return springgrasp::Main(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return StatisticsMain(argc, argv, springgrasp::Main); }

@@ -8,13 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <exception>
 #include <map>
 #include <numbers>
 #include <string>
 
 #include "base/files.h"
 #include "grasp_cases.h"
+#include "statistics_main.h"
 
 namespace springgrasp {
 namespace {
@@ -257,11 +257,4 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace springgrasp
 
-int main(int argc, char** argv) {
-  try {
-    return springgrasp::Main(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return StatisticsMain(argc, argv, springgrasp::Main); }
