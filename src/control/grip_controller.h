@@ -22,6 +22,7 @@ inline PneumaticGains StiffHold() {
   return gains;
 }
 
+// Tuned with experiments/grip, seeds 1 and 11.
 struct GripSettings {
   PneumaticGains moving, holding = StiffHold();
   ContactSettings contact;

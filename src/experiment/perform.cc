@@ -17,6 +17,8 @@ namespace {
 
 constexpr double kGravity = 9.81;  // m/s^2
 constexpr double kMinRise = 0.5;   // of the lift height, that the object must have risen
+// Of max_finger_force, for all fingers of a power grasp together: the thumb bears what they press
+// and the load (tuned with experiments/grip, seeds 1 and 11).
 constexpr double kEnclosingShare = 0.65;
 constexpr double kLateReach = 0.8;    // of T, from where on the hand must be where it is wanted
 constexpr double kGripWindow = 0.25;  // s, to see whether a finger touches at the end of grip
