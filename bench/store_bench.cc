@@ -10,9 +10,9 @@ namespace springgrasp {
 namespace {
 
 RunDescription Plan(int n) {
-  RunDescription run{"name: bench\n", "", {}};
+  RunDescription run{"name: bench\n", "", "", {}};
   for (int i = 0; i < n; ++i) {
-    run.plan.push_back({fmt::format("{:016x}", i), "case", "synthesised", false, i, 1, ""});
+    run.plan.push_back({fmt::format("{:016x}", i), "case", "synthesised", "none", i, 1, ""});
   }
   return run;
 }

@@ -56,7 +56,7 @@ void PrintPictures(const StoredTrial& trial, const std::string& directory) {
   }
   std::sort(files.begin(), files.end());
   std::string name = CaseLabel(trial.plan);
-  if (trial.plan.demonstration != "synthesised") name += " " + trial.plan.demonstration;
+  if (IsRecording(trial.plan)) name += " " + trial.plan.demonstration;
   for (const std::string& file : files) fmt::print("{}: {}\n", name, file);
 }
 

@@ -30,9 +30,9 @@ struct SampledKey {
 
 // Where the demonstrations of a case come from.
 struct CaseDemonstration {
-  bool recorded = false;  // else synthesised
-  std::string file;       // recorded: one CSV ...
-  std::string match;      // ... or all of the experiment's folder that match this glob pattern
+  std::string kind = "synthesised";  // synthesised | recorded | library: learned already
+  std::string file;   // recorded: one CSV; library: a grasp YAML, empty: the shipped one ...
+  std::string match;  // ... or all of the experiment's folder that match this glob pattern
 };
 
 // `key=value` with a dotted path into the scene's YAML. `{depth}` in a value stands for the
@@ -46,8 +46,9 @@ struct ExperimentCase {
   std::string until = "perform";  // perform | observe: tracked, not learned
   int dim = 3;
   std::string profile = "human";
-  std::string contacts = "points";  // points | centre (Eq. (6) alone)
-  int repetitions = 0;              // 0: the experiment's
+  std::string contacts = "points";      // points | centre (Eq. (6) alone)
+  int repetitions = 0;                  // 0: the experiment's
+  std::vector<std::string> substitute;  // beside the experiment's
   CaseDemonstration demonstration;
   std::vector<SceneOverride> set;
   // Grid: every combination of the values of each scene key is a condition of its own.
@@ -66,10 +67,9 @@ struct Experiment {
   std::string name;
   std::uint64_t seed = 0;
   int repetitions = 1;
-  std::string demonstrations;  // folder of recordings; empty: none needed
-  // Baseline: every trial that performs also with a constant open hand.
-  bool with_open_hand = false;
-  std::vector<std::string> substitute;  // sorted
+  std::string demonstrations;           // folder of recordings; empty: none needed
+  std::vector<std::string> baselines;   // every trial that performs also by each of these
+  std::vector<std::string> substitute;  // in all cases
   TrialCriteria criteria;
   RecordOptions record;
   std::vector<ExperimentCase> cases;

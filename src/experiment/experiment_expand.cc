@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -17,6 +18,7 @@
 #include "experiment/experiment.h"
 #include "experiment/observation_key.h"
 #include "experiment/trial_identity.h"
+#include "grasp/library.h"
 
 namespace springgrasp {
 namespace {
@@ -36,7 +38,7 @@ std::string FindNamed(const std::string& name, const Experiment& e, const char* 
 }
 
 std::vector<std::string> FilesOf(const Experiment& e, const ExperimentCase& c) {
-  if (!c.demonstration.recorded) return {""};
+  if (c.demonstration.kind != "recorded") return {""};
   if (!c.demonstration.file.empty()) return {FindNamed(c.demonstration.file, e, "experiments")};
   ThrowUnless(!e.demonstrations.empty(),
               "{}: case '{}' takes recordings from a folder; say which, for example "
@@ -123,6 +125,38 @@ void BuildScene(const Experiment& e, const ExperimentCase& c,
   if (!file.empty()) ReadDemonstration(file);
 }
 
+// The entry that a case performs in place of one learned from its own demonstration.
+void UseLibrary(const Experiment& e, const ExperimentCase& c, TrialSpec& spec) {
+  ThrowUnless(c.until == "perform",
+              "{}: case '{}' takes its grasp from the library, so that nothing is observed; until "
+              "is '{}', expected perform",
+              e.source, c.name, c.until);
+  const std::string& file = c.demonstration.file;
+  spec.demonstration = "library";
+  spec.grasp_file = file.empty() ? (fs::path(ShippedLibrary()) / (c.grasp_type + ".yaml")).string()
+                                 : FindNamed(file, e, "models/grasps");
+  const Grasp grasp = ReadGrasp(spec.grasp_file);
+  ThrowUnless(grasp.type == c.grasp_type, "{}: a {} grasp, but case '{}' of {} is a {}",
+              spec.grasp_file, grasp.type, c.name, e.source, c.grasp_type);
+  spec.grasp_hash = Hash(spec.grasp_file);
+  const std::string shown = DemonstrationOfEntry(spec.grasp_file);
+  const std::vector<std::string>& b = e.baselines;
+  std::error_code ignored;
+  if (fs::exists(shown, ignored)) {
+    spec.grasp_hash += Hash(shown);
+  } else {
+    ThrowUnless(
+        std::find(b.begin(), b.end(), "playback") == b.end(),
+        "{}: the baseline playback needs the demonstration that this grasp was learned from "
+        "as {}",
+        spec.grasp_file, shown);
+  }
+  ThrowUnless(std::find(b.begin(), b.end(), "open_hand") == b.end(),
+              "{}: the baseline open_hand learns from its own demonstration, but case '{}' takes "
+              "its grasp from the library",
+              e.source, c.name);
+}
+
 // `condition` with the values that one repetition drew.
 std::vector<SceneOverride> WithSample(const Experiment& e, const ExperimentCase& c,
                                       std::vector<SceneOverride> condition, TrialSpec& spec) {
@@ -145,13 +179,16 @@ std::vector<PlannedTrial> TrialsOf(const Experiment& e, const ExperimentCase& c,
                                    const std::string& file) {
   TrialSpec spec;
   spec.demonstration = file.empty() ? "synthesised" : fs::path(file).stem().string();
+  if (c.demonstration.kind == "library") UseLibrary(e, c, spec);
   spec.grasp_type = c.grasp_type;
   spec.until = c.until;
   spec.dim = c.dim;
   spec.profile = c.profile;
   spec.object_centre = c.contacts == "centre";
   spec.criteria = e.criteria;
-  spec.substitute = e.substitute;
+  std::set<std::string> substitute(e.substitute.begin(), e.substitute.end());
+  substitute.insert(c.substitute.begin(), c.substitute.end());
+  spec.substitute.assign(substitute.begin(), substitute.end());
   spec.seed = e.seed;
   std::vector<PlannedTrial> trials;
   const int repetitions = c.repetitions > 0 ? c.repetitions : e.repetitions;
@@ -160,13 +197,15 @@ std::vector<PlannedTrial> TrialsOf(const Experiment& e, const ExperimentCase& c,
     if (r == 0 || !c.sample.empty()) {
       BuildScene(e, c, WithSample(e, c, condition, spec), file, spec);
     }
-    const bool with_open_hand = e.with_open_hand && c.until == "perform";
-    for (const bool open_hand : {false, true}) {
-      if (open_hand && !with_open_hand) continue;
-      spec.open_hand = open_hand;
+    std::vector<std::string> baselines = {"none"};
+    if (c.until == "perform") {
+      baselines.insert(baselines.end(), e.baselines.begin(), e.baselines.end());
+    }
+    for (const std::string& baseline : baselines) {
+      spec.baseline = baseline;
       PlannedTrial trial{TrialIdentity(spec), spec, {}};
       trial.group = HashText(ObservationKey(spec));
-      const bool first = r == 0 && !open_hand;
+      const bool first = r == 0 && baseline == "none";
       trial.output.video = Wanted(e.record.videos, first);
       trial.output.overlay = Wanted(e.record.overlays, first);
       trial.output.trajectories = Wanted(e.record.trajectories, first);

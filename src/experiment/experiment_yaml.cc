@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -26,17 +27,31 @@ RecordWhich ReadWhich(YamlReader& yaml, const std::string& key, RecordWhich valu
                          : RecordWhich::kOutcomes;
 }
 
+// A list of some of these names, sorted.
+std::vector<std::string> ReadSome(YamlReader& yaml, const std::string& key,
+                                  const std::vector<std::string>& allowed) {
+  std::vector<std::string> names;
+  yaml.Read(key, names);
+  for (const std::string& name : names) {
+    ThrowUnless(std::find(allowed.begin(), allowed.end(), name) != allowed.end(),
+                "{}: {} holds '{}', expected some of {}", yaml.Where(key), key, name,
+                fmt::join(allowed, ", "));
+  }
+  const std::set<std::string> sorted(names.begin(), names.end());
+  return {sorted.begin(), sorted.end()};
+}
+
 CaseDemonstration ReadCaseDemonstration(YamlReader yaml) {
   CaseDemonstration d;
-  std::string kind = "synthesised";
-  yaml.Read("kind", kind, {"synthesised", "recorded"});
-  d.recorded = kind == "recorded";
+  yaml.Read("kind", d.kind, {"synthesised", "recorded", "library"});
   yaml.Read("file", d.file);
   yaml.Read("match", d.match);
-  ThrowUnless(d.recorded || (d.file.empty() && d.match.empty()),
+  ThrowUnless(d.kind != "synthesised" || (d.file.empty() && d.match.empty()),
               "{}: file and match are for recorded demonstrations, but kind is synthesised",
               yaml.Where("kind"));
-  ThrowUnless(!d.recorded || d.file.empty() != d.match.empty(),
+  ThrowUnless(d.kind != "library" || d.match.empty(),
+              "{}: match is for recorded demonstrations, but kind is library", yaml.Where("kind"));
+  ThrowUnless(d.kind != "recorded" || d.file.empty() != d.match.empty(),
               "{}: a recorded demonstration needs either a file or a match (a pattern such as "
               "pinch_*.csv for the files of the folder `demonstrations`)",
               yaml.Where("kind"));
@@ -58,6 +73,7 @@ ExperimentCase ReadCase(YamlReader& yaml) {
   yaml.Read("dim", c.dim, {2, 3});
   yaml.Read("profile", c.profile, {"human", "paper"});
   yaml.Read("contacts", c.contacts, {"points", "centre"});
+  c.substitute = ReadSome(yaml, "substitute", kSubstitutes);
   c.demonstration = ReadCaseDemonstration(yaml.Child("demonstration"));
   YamlReader set = yaml.Child("set");
   for (const std::string& key : set.Keys()) c.set.emplace_back(key, set.Text(key));
@@ -90,18 +106,6 @@ void ReadCriteria(YamlReader yaml, TrialCriteria& criteria) {
     yaml.Read(field.name, criteria.*field.member, field.bounds);
   }
   yaml.Finish();
-}
-
-void ReadSubstitute(YamlReader& yaml, std::vector<std::string>& substitute) {
-  std::vector<std::string> names;
-  yaml.Read("substitute", names);
-  const std::set<std::string> allowed(kSubstitutes.begin(), kSubstitutes.end());
-  for (const std::string& name : names) {
-    ThrowUnless(allowed.count(name) > 0, "{}: substitute holds '{}', expected some of {}",
-                yaml.Where("substitute"), name, fmt::join(kSubstitutes, ", "));
-  }
-  const std::set<std::string> sorted(names.begin(), names.end());
-  substitute.assign(sorted.begin(), sorted.end());
 }
 
 // The file that a user means by "first_grasps", "experiments/first_grasps" or a YAML's path.
@@ -145,10 +149,8 @@ Experiment ParseExperiment(const std::string& text, const std::string& source,
   e.seed = static_cast<std::uint64_t>(seed);
   yaml.Read("repetitions", e.repetitions, {1, 1000000});
   yaml.Read("demonstrations", e.demonstrations);
-  std::string baseline = "none";
-  yaml.Read("baseline", baseline, {"none", "open_hand"});
-  e.with_open_hand = baseline == "open_hand";
-  ReadSubstitute(yaml, e.substitute);
+  e.baselines = ReadSome(yaml, "baselines", kBaselines);
+  e.substitute = ReadSome(yaml, "substitute", kSubstitutes);
   ReadCriteria(yaml.Child("criteria"), e.criteria);
   YamlReader record = yaml.Child("record");
   e.record.videos = ReadWhich(record, "videos", e.record.videos);

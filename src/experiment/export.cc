@@ -44,11 +44,10 @@ std::string ExportCsv(std::vector<StoredTrial> trials, bool timings) {
   csv += "\n";
   for (const StoredTrial& trial : trials) {
     if (!trial.result) continue;
-    csv +=
-        fmt::format("{},{},{},{},{},{},{},{},{}", trial.plan.id, Quoted(trial.plan.case_name),
-                    Quoted(trial.plan.demonstration), trial.plan.open_hand ? "open_hand" : "none",
-                    trial.plan.repetition, trial.plan.seed, OutcomeName(trial.result->outcome),
-                    Quoted(trial.result->phase), Quoted(trial.result->message));
+    csv += fmt::format("{},{},{},{},{},{},{},{},{}", trial.plan.id, Quoted(trial.plan.case_name),
+                       Quoted(trial.plan.demonstration), trial.plan.baseline, trial.plan.repetition,
+                       trial.plan.seed, OutcomeName(trial.result->outcome),
+                       Quoted(trial.result->phase), Quoted(trial.result->message));
     AppendValues(csv, trial.result->values, names);
     AppendValues(csv, trial.result->wall_s, stages);
     csv += "\n";

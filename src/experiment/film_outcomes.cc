@@ -1,5 +1,7 @@
 #include "experiment/film_outcomes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <set>
@@ -27,11 +29,10 @@ std::vector<PlannedTrial> TrialsToFilm(const std::vector<PlannedTrial>& planned,
   std::set<std::pair<std::string, bool>> seen;  // condition (with its baseline), success
   for (const StoredTrial& trial : stored) {
     if (!trial.result) continue;
-    const auto plan = std::find_if(planned.begin(), planned.end(), [&](const PlannedTrial& p) {
-      return p.id == trial.plan.id;
-    });
+    const auto plan = std::find_if(planned.begin(), planned.end(),
+                                   [&](const PlannedTrial& p) { return p.id == trial.plan.id; });
     if (plan == planned.end() || plan->spec.until != "perform") continue;
-    const std::string condition = trial.plan.case_name + (trial.plan.open_hand ? " open" : "");
+    const std::string condition = fmt::format("{}/{}", trial.plan.case_name, trial.plan.baseline);
     if (!seen.insert({condition, trial.result->outcome == Outcome::kSuccess}).second) continue;
     if (!fs::exists(VideoOf(directory, plan->id))) film.push_back(*plan);
   }
@@ -43,9 +44,8 @@ bool FilmTrials(const std::vector<PlannedTrial>& trials, const std::vector<Store
                 const std::function<bool()>& stop_requested) {
   for (const PlannedTrial& trial : trials) {
     if (stop_requested()) return false;
-    const auto before = std::find_if(stored.begin(), stored.end(), [&](const StoredTrial& s) {
-      return s.plan.id == trial.id;
-    });
+    const auto before = std::find_if(stored.begin(), stored.end(),
+                                     [&](const StoredTrial& s) { return s.plan.id == trial.id; });
     const fs::path video = VideoOf(directory, trial.id);
     fs::create_directories(video.parent_path());
     const ScratchFolder folder(directory);

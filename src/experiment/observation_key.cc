@@ -21,8 +21,9 @@ std::string ObservationKey(const TrialSpec& spec) {
 }
 
 std::string LearningKey(const TrialSpec& spec) {
-  return fmt::format("{} {} {} {} {}\n{}", spec.grasp_type, spec.dim, spec.profile, spec.open_hand,
-                     fmt::join(spec.substitute, ","), ObservationKey(spec));
+  return fmt::format("{} {} {} {} {}\n{}", spec.grasp_type, spec.dim, spec.profile,
+                     spec.baseline == "open_hand", fmt::join(spec.substitute, ","),
+                     ObservationKey(spec));
 }
 
 }  // namespace springgrasp

@@ -100,6 +100,10 @@ class Performer {
   // the trial is over.
   bool Step(const ArmTarget& arm_target, const HandReference& hand, GripStage stage, double load) {
     const double dt = simulation_.timestep();
+    if (options_.exact_arm) robot_.MoveArm(arm_target.q, arm_target.qd, simulation_);
+    if (options_.exact_fingers && stage == GripStage::kFree) {
+      robot_.MoveHand(hand.q, hand.qd, simulation_);
+    }
     RobotState state = robot_.Read(simulation_);
     const ValveVector pressure = state.pressure;
     drives_.Sense(state);

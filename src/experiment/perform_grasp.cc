@@ -11,6 +11,7 @@
 #include "experiment/reach_report.h"
 #include "experiment/trajectory_csv.h"
 #include "experiment/trial_film.h"
+#include "grasp/library.h"
 #include "kinematics/mirror.h"
 #include "sim/scene_builder.h"
 
@@ -87,6 +88,12 @@ void RecordPerformance(const Performance& p, const std::string& type, const Perf
   if (p.reached > Phase::kDisturb) v["shake_fraction"] = p.shake_fraction;
 }
 
+std::vector<Grasp> ShippedGrasps() {
+  std::vector<Grasp> grasps;
+  for (LibraryEntry& entry : ReadLibrary(ShippedLibrary())) grasps.push_back(entry.grasp);
+  return grasps;
+}
+
 // From the scene's start posture.
 TrialResult PerformFrom(const Grasp& grasp, const Scene& scene,
                         const PerformGraspOptions& options) {
@@ -114,6 +121,10 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene,
   request.arm_start = robot.Read(simulation).arm_q;
   request.criteria = options.criteria;
   request.object_centre = options.object_centre;
+  request.baseline = options.baseline;
+  if (request.baseline && request.baseline->name == "synergies") {
+    request.baseline->synergies = FindSynergies(body, ShippedGrasps());
+  }
   PlanResult plan = PlanGrasp(body, grasp, request);
   RecordPlan(plan, result);
   if (!plan.plan) {
@@ -139,6 +150,8 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene,
   perform.pneumatics = scene.pneumatics;
   perform.actuation = options.actuation;
   perform.shape = scene.objects[0].shape.value_or(plan.plan->shape);
+  perform.exact_arm = options.exact_arm;
+  perform.exact_fingers = options.exact_fingers;
   perform.max_finger_force = scene.max_finger_force;
   std::optional<TrialFilm> film;
   if (!options.video.empty()) {

@@ -1,6 +1,7 @@
 // One grasp of the library on a scene: plan it, perform it, judge it.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "experiment/perform.h"
@@ -16,12 +17,17 @@ struct PerformGraspOptions {
   TrialCriteria criteria;
   RandomEngine actuation{0};   // stream "actuation" of the trial
   bool believe_truth = false;  // the object's true pose, size, mass and friction are known
+  // In the place of the drives: the arm's joints are where they are wanted at every step; the
+  // fingers' too, until the hand arrives (T).
+  bool exact_arm = false, exact_fingers = false;
   bool object_centre = false;  // Eq. (6) alone, no contact points
-  std::string camera;          // of the video; empty: the scene's overview cameras side by side
-  std::string video;           // .mp4, if not empty
-  bool annotate = false;       // contact forces and fingertips drawn into the video
-  std::string trajectory;      // .csv of what the robot did, if not empty
-  std::string motion;          // .csv of the generated fingertip motion, if not empty
+  // What moves the fingers in the springs' place (its synergies are found here); none: the springs.
+  std::optional<BaselineRequest> baseline;
+  std::string camera;      // of the video; empty: the scene's overview cameras side by side
+  std::string video;       // .mp4, if not empty
+  bool annotate = false;   // contact forces and fingertips drawn into the video
+  std::string trajectory;  // .csv of what the robot did, if not empty
+  std::string motion;      // .csv of the generated fingertip motion, if not empty
 };
 
 // `scene`: poses drawn already; the first object is grasped. Where it is out of reach and the scene

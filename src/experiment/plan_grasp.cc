@@ -94,6 +94,18 @@ std::vector<Eigen::VectorXd> CloseAfterArrival(
   return q;
 }
 
+// The last posture of a baseline's way that keeps its involved fingers off the object as the hand
+// will hold it, or the first.
+Eigen::VectorXd LastClear(const RobotHand& hand, const std::vector<Eigen::VectorXd>& q,
+                          const Pose& X_OH, const Shape& shape, const PerFinger<bool>& involved) {
+  std::vector<Pose> X_HB;
+  for (std::size_t i = q.size(); i-- > 0;) {
+    ForwardKinematics(hand.tree, q[i], X_HB);
+    if (HandDistance(hand, X_HB, X_OH, shape, involved, false) >= kWaitClearance) return q[i];
+  }
+  return q.front();
+}
+
 template <typename Vector>
 std::vector<Vector> Fixed(const std::vector<Eigen::VectorXd>& path) {
   return std::vector<Vector>(path.begin(), path.end());
@@ -189,7 +201,7 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     const Pose X_WO = request.object.X_WO * planned.X_OF;
     path(planned.X_OF);
     q_human = SolveHandMotionSmoothly(human, TipsOf(motion), {.dt = dt});
-    const HandMotionResult hand = MapHandMotion(
+    HandMotionResult hand = MapHandMotion(
         human, body.hand,
         RequestHandMotion(motion, q_human, result.posture, planned.X_WH, X_WO, dt), result.posture);
     result.motion = motion;
@@ -214,12 +226,25 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     plan.X_WH = planned.X_WH;
     plan.arm = Fixed<ArmVector>(planned.arm);
     // An object that seats in the palm has to pass the thumb on its way in.
-    const Eigen::VectorXd q_wait = grasp.type == "power"
-                                       ? q_open
-                                       : OpenedPosture(body.hand, result.posture, generate.shape,
-                                                       motion.involved, kWaitClearance);
+    const bool power = grasp.type == "power";
+    Eigen::VectorXd q_wait = power ? q_open
+                                   : OpenedPosture(body.hand, result.posture, generate.shape,
+                                                   motion.involved, kWaitClearance);
+    Eigen::VectorXd q_end = result.posture.q;
+    if (request.baseline) {
+      hand.q = PlanBaselineHand(*request.baseline, body, human, grasp, motion, result.posture);
+      for (std::size_t i = 0; i < hand.q.size(); ++i) {
+        hand.p_HF[i] = TipPositions(body.hand, hand.q[i]);
+      }
+      q_end = hand.q.back();
+      // Demonstrated fingers have a widest aperture of their own; others open as far as they must.
+      q_wait = request.baseline->name == "playback" ? body.hand.tree.upper
+               : power                              ? hand.q.front()
+                       : LastClear(body.hand, hand.q, result.posture.X_HO.inverse(), generate.shape,
+                                   motion.involved);
+    }
     const std::vector<Eigen::VectorXd> q_hand =
-        CloseAfterArrival(body.hand, hand, motion.involved, q_wait, result.posture.q, dt, motion.T);
+        CloseAfterArrival(body.hand, hand, motion.involved, q_wait, q_end, dt, motion.T);
     plan.hand = Fixed<HandVector>(q_hand);
     plan.lift = Fixed<ArmVector>(planned.lift);
     for (int axis = 0; axis < 3; ++axis) plan.shake[axis] = Fixed<ArmVector>(planned.shake[axis]);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "experiment/finger_baseline.h"
 #include "experiment/grasp_plan.h"
 #include "experiment/phases.h"
 #include "experiment/robot_body.h"
@@ -22,6 +23,7 @@ struct PlanRequest {
   TrialCriteria criteria;                   // lift and shake are planned too
   double dt = 0.005;                        // s
   bool object_centre = false;               // Eq. (6) alone, no contact points
+  std::optional<BaselineRequest> baseline;  // moves the fingers in the springs' place
 };
 
 struct PlanResult {

@@ -48,7 +48,7 @@ TrialResult RunAndRecord(const PlannedTrial& trial, const std::string& directory
 std::string Label(const TrialSpec& spec) {
   std::string label = spec.case_name;
   if (spec.demonstration != "synthesised") label += " " + spec.demonstration;
-  if (spec.open_hand) label += " (open hand)";
+  if (spec.baseline != "none") label += " (" + spec.baseline + ")";
   return fmt::format("{} {}", label, spec.repetition);
 }
 
@@ -193,7 +193,7 @@ RunDescription DescribeRun(const Experiment& experiment, const std::vector<Plann
   run.provenance = DescribeProvenance();
   for (const PlannedTrial& trial : trials) {
     run.plan.push_back({trial.id, trial.spec.case_name, trial.spec.demonstration,
-                        trial.spec.open_hand, trial.spec.repetition, trial.spec.seed,
+                        trial.spec.baseline, trial.spec.repetition, trial.spec.seed,
                         CanonicalText(trial.spec)});
   }
   return run;

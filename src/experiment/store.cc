@@ -19,7 +19,7 @@ constexpr const char* kSchema = R"(
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE trials (
   id TEXT PRIMARY KEY, position INTEGER NOT NULL UNIQUE, case_name TEXT NOT NULL,
-  demonstration TEXT NOT NULL, open_hand INTEGER NOT NULL, repetition INTEGER NOT NULL,
+  demonstration TEXT NOT NULL, baseline TEXT NOT NULL, repetition INTEGER NOT NULL,
   seed INTEGER NOT NULL, parameters TEXT NOT NULL);
 CREATE TABLE results (
   id TEXT PRIMARY KEY REFERENCES trials, outcome TEXT NOT NULL, phase TEXT NOT NULL,
@@ -67,7 +67,7 @@ void CreateDatabase(const std::string& directory, const RunDescription& run) {
     std::int64_t position = 0;
     for (const PlanRow& row : run.plan) {
       insert.Bind(0, row.id).Bind(1, position++).Bind(2, row.case_name);
-      insert.Bind(3, row.demonstration).Bind(4, std::int64_t{row.open_hand});
+      insert.Bind(3, row.demonstration).Bind(4, row.baseline);
       insert.Bind(5, std::int64_t{row.repetition}).Bind(6, static_cast<std::int64_t>(row.seed));
       insert.Bind(7, row.parameters).Run();
     }
@@ -211,14 +211,14 @@ std::vector<StoredTrial> ResultStore::Trials() {
   }
   while (wall_times.Step()) seconds[wall_times.Text(0)][wall_times.Text(1)] = wall_times.Real(2);
   Statement query = database_->Prepare(
-      "SELECT trials.id, case_name, demonstration, open_hand, repetition, seed, parameters, "
+      "SELECT trials.id, case_name, demonstration, baseline, repetition, seed, parameters, "
       "outcome, phase, message FROM trials LEFT JOIN results USING (id) ORDER BY position");
   while (query.Step()) {
     StoredTrial trial;
     trial.plan = {query.Text(0),
                   query.Text(1),
                   query.Text(2),
-                  query.Integer(3) != 0,
+                  query.Text(3),
                   static_cast<int>(query.Integer(4)),
                   static_cast<std::uint64_t>(query.Integer(5)),
                   query.Text(6)};

@@ -18,7 +18,7 @@ namespace springgrasp {
 // Raised by hand when the same parameters would give another outcome than before.
 inline constexpr int kBehaviourVersion = 7;
 // Raised when the tables change.
-inline constexpr int kSchemaVersion = 1;
+inline constexpr int kSchemaVersion = 2;
 
 // The directory holds results of another experiment or another behaviour version (exit code 4).
 class ForeignDirectory : public Error {
@@ -31,7 +31,7 @@ struct PlanRow {
   std::string id;
   std::string case_name;
   std::string demonstration;
-  bool open_hand = false;
+  std::string baseline = "none";
   int repetition = 0;
   std::uint64_t seed = 0;
   std::string parameters;  // CanonicalText

@@ -44,7 +44,7 @@ std::string Shown(const std::optional<double>& value) {
 struct Recording {
   std::string case_name, demonstration;
   std::vector<double> tracking, reproduction;  // mm
-  std::map<std::string, int> outcomes, open_hand;
+  std::map<std::string, int> outcomes, baseline;
 };
 
 std::string Counts(const std::map<std::string, int>& counts) {
@@ -58,9 +58,10 @@ std::string Counts(const std::map<std::string, int>& counts) {
 
 void AddTrial(Recording& recording, const StoredTrial& trial) {
   if (!trial.result) return;
-  auto& counts = trial.plan.open_hand ? recording.open_hand : recording.outcomes;
+  const bool baseline = trial.plan.baseline != "none";
+  auto& counts = baseline ? recording.baseline : recording.outcomes;
   ++counts[std::string(OutcomeName(trial.result->outcome))];
-  if (trial.plan.open_hand) return;
+  if (baseline) return;
   const auto& values = trial.result->values;
   if (const auto value = values.find("tracking_median_mm"); value != values.end()) {
     recording.tracking.push_back(value->second);
@@ -73,7 +74,13 @@ void AddTrial(Recording& recording, const StoredTrial& trial) {
 }  // namespace
 
 std::string CaseLabel(const PlanRow& plan) {
-  return plan.open_hand ? plan.case_name + " (open hand)" : plan.case_name;
+  std::string baseline = plan.baseline;
+  std::replace(baseline.begin(), baseline.end(), '_', ' ');
+  return baseline == "none" ? plan.case_name : fmt::format("{} ({})", plan.case_name, baseline);
+}
+
+bool IsRecording(const PlanRow& plan) {
+  return plan.demonstration != "synthesised" && plan.demonstration != "library";
 }
 
 std::optional<double> Median(std::vector<double> values) {
@@ -119,7 +126,7 @@ std::string OutcomeTable(const std::vector<StoredTrial>& trials) {
 std::string RecordingTable(const std::vector<StoredTrial>& trials) {
   std::vector<Recording> recordings;
   for (const StoredTrial& trial : trials) {
-    if (trial.plan.demonstration == "synthesised") continue;
+    if (!IsRecording(trial.plan)) continue;
     auto recording = std::find_if(recordings.begin(), recordings.end(), [&](const Recording& r) {
       return r.case_name == trial.plan.case_name && r.demonstration == trial.plan.demonstration;
     });
@@ -132,10 +139,10 @@ std::string RecordingTable(const std::vector<StoredTrial>& trials) {
   }
   if (recordings.empty()) return "";
   std::vector<std::vector<std::string>> rows = {
-      {"case", "recording", "tracking mm", "reproduction mm", "outcome", "with open hand"}};
+      {"case", "recording", "tracking mm", "reproduction mm", "outcome", "of baselines"}};
   for (const Recording& r : recordings) {
     rows.push_back({r.case_name, r.demonstration, Shown(Median(r.tracking)),
-                    Shown(Median(r.reproduction)), Counts(r.outcomes), Counts(r.open_hand)});
+                    Shown(Median(r.reproduction)), Counts(r.outcomes), Counts(r.baseline)});
   }
   return AlignColumns(rows);
 }

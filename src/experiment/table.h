@@ -18,8 +18,11 @@ std::string OutcomeTable(const std::vector<StoredTrial>& trials);
 // trial used a recording.
 std::string RecordingTable(const std::vector<StoredTrial>& trials);
 
-// "power", or "power (open hand)" for the baseline.
+// "power", or "power (open hand)" for a baseline.
 std::string CaseLabel(const PlanRow& plan);
+
+// Whether the trial's demonstration is a file of its own, whose name the plan carries.
+bool IsRecording(const PlanRow& plan);
 
 // Middle value, or mean of the two middle ones; absent for none.
 std::optional<double> Median(std::vector<double> values);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "base/error.h"
 #include "base/random.h"
@@ -16,22 +17,19 @@
 #include "experiment/perform_grasp.h"
 #include "experiment/trial_observe.h"
 #include "grasp/learn.h"
+#include "grasp/library.h"
+#include "grasp/shown_reach.h"
+#include "grasp/transfer.h"
 #include "sim/kinematic_tree_of.h"
 #include "sim/scene_builder.h"
 
 namespace springgrasp {
 namespace {
 
+constexpr int kPlaybackSteps = 201;  // over a reach
+
 bool Substituted(const TrialSpec& spec, const std::string& stage) {
   return std::find(spec.substitute.begin(), spec.substitute.end(), stage) != spec.substitute.end();
-}
-
-void CheckSubstitutes(const TrialSpec& spec) {
-  for (const std::string& stage : spec.substitute) {
-    ThrowUnless(stage == "tracks" || stage == "hand_pose" || stage == "object_pose",
-                "substitute: '{}' is not available yet; expected tracks, hand_pose or object_pose",
-                stage);
-  }
 }
 
 // What the learner is given: tracked, or truth in the place of some of it.
@@ -96,14 +94,26 @@ const SeenDemonstration& See(const TrialSpec& spec, const Scene& scene, const st
   });
 }
 
-const Grasp& Learn(const TrialSpec& spec, const Demonstration& demonstration, TrialMemory& memory) {
+Grasp LearnFrom(const TrialSpec& spec, const Demonstration& demonstration) {
+  LearnOptions options;
+  options.type = spec.grasp_type;
+  options.dim = spec.dim;
+  options.profile = spec.profile;
+  options.hand_length = spec.scene.demonstrator.hand_length;
+  return LearnGrasp(demonstration, options);
+}
+
+// Contacts and springs may be those of a grasp that is learned from the truth.
+const Grasp& Learn(const TrialSpec& spec, const Demonstration& demonstration,
+                   const Demonstration& truth, TrialMemory& memory) {
   return memory.grasp.Get(LearningKey(spec), [&] {
-    LearnOptions options;
-    options.type = spec.grasp_type;
-    options.dim = spec.dim;
-    options.profile = spec.profile;
-    options.hand_length = spec.scene.demonstrator.hand_length;
-    return LearnGrasp(demonstration, options);
+    Grasp grasp = LearnFrom(spec, demonstration);
+    const bool contacts = Substituted(spec, "contacts"), springs = Substituted(spec, "k");
+    if (!contacts && !springs) return grasp;
+    const Grasp true_grasp = LearnFrom(spec, truth);
+    if (contacts) TakeContacts(true_grasp, grasp);
+    if (springs) TakeSprings(true_grasp, grasp);
+    return grasp;
   });
 }
 
@@ -142,56 +152,86 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-TrialResult RunToPerform(TrialMemory& memory, const TrialSpec& spec, const TrialOutput& output) {
-  CheckSubstitutes(spec);
-  ThrowUnless(!spec.scene.objects.empty(), "{}: the scene has no object to grasp",
-              spec.scene.source);
-  const auto file = [&](bool wanted, const char* name) {
-    return wanted && !output.folder.empty() ? (std::filesystem::path(output.folder) / name).string()
-                                            : std::string();
-  };
-  const auto stream = [&](const char* name) {
-    return MakeStream(spec.seed, spec.repetition, name);
-  };
-  TrialResult result;
-  Stopwatch watch(result);
-  Scene scene = spec.scene;
-  RandomEngine pose_engine = stream("pose");
-  DrawObjectPoses(scene, pose_engine);
+// What is performed, and the demonstration that it was learned from (absent: not kept).
+struct LearnedGrasp {
+  Grasp grasp;
+  std::optional<Demonstration> demonstration;
+};
 
-  const SeenDemonstration& seen = See(spec, scene, file(output.overlay, "tracking.mp4"), memory);
+LearnedGrasp FromLibrary(const TrialSpec& spec) {
+  LearnedGrasp learned{ReadGrasp(spec.grasp_file), {}};
+  const std::string shown = DemonstrationOfEntry(spec.grasp_file);
+  std::error_code ignored;
+  if (std::filesystem::exists(shown, ignored)) learned.demonstration = ReadDemonstration(shown);
+  return learned;
+}
+
+std::string PathIn(const TrialOutput& output, bool wanted, const char* name) {
+  return wanted && !output.folder.empty() ? (std::filesystem::path(output.folder) / name).string()
+                                          : std::string();
+}
+
+// Sees the demonstration and learns from it; nothing: `result` says why not.
+std::optional<LearnedGrasp> SeeAndLearn(TrialMemory& memory, const TrialSpec& spec,
+                                        const Scene& scene, const TrialOutput& output,
+                                        TrialResult& result, Stopwatch& watch) {
+  const SeenDemonstration& seen =
+      See(spec, scene, PathIn(output, output.overlay, "tracking.mp4"), memory);
   result.values = seen.values;
   watch.Lap("observe");
 
   Demonstration demonstration = DemonstrationFor(spec, seen);
-  if (spec.open_hand) HoldOpen(scene.demonstrator.hand_length, demonstration);
+  if (spec.baseline == "open_hand") HoldOpen(scene.demonstrator.hand_length, demonstration);
   if (output.trajectories && !output.folder.empty()) {
-    WriteDemonstration(demonstration, file(true, "demonstration.csv"));
-    WriteDemonstration(seen.truth, file(true, "truth.csv"));
+    WriteDemonstration(demonstration, PathIn(output, true, "demonstration.csv"));
+    WriteDemonstration(seen.truth, PathIn(output, true, "truth.csv"));
   }
   const std::string untracked = WhyUntracked(demonstration, seen.involved);
   if (!untracked.empty()) {
     result.outcome = Outcome::kUntracked;
     result.message = untracked;
     result.phase = "observe";
-    return result;
+    return std::nullopt;
   }
+  return LearnedGrasp{Learn(spec, demonstration, seen.truth, memory), demonstration};
+}
 
-  const Grasp& grasp = Learn(spec, demonstration, memory);
-  RecordGrasp(grasp, result);
-  if (output.trajectories) WriteGrasp(grasp, file(true, "grasp.yaml"));
+TrialResult RunToPerform(TrialMemory& memory, const TrialSpec& spec, const TrialOutput& output) {
+  ThrowUnless(!spec.scene.objects.empty(), "{}: the scene has no object to grasp",
+              spec.scene.source);
+  TrialResult result;
+  Stopwatch watch(result);
+  Scene scene = spec.scene;
+  RandomEngine pose_engine = MakeStream(spec.seed, spec.repetition, "pose");
+  DrawObjectPoses(scene, pose_engine);
+
+  const std::optional<LearnedGrasp> learned =
+      spec.grasp_file.empty() ? SeeAndLearn(memory, spec, scene, output, result, watch)
+                              : FromLibrary(spec);
+  if (!learned) return result;
+  RecordGrasp(learned->grasp, result);
+  if (output.trajectories) WriteGrasp(learned->grasp, PathIn(output, true, "grasp.yaml"));
   watch.Lap("learn");
 
   PerformGraspOptions perform;
   perform.criteria = spec.criteria;
-  perform.actuation = stream("actuation");
+  perform.actuation = MakeStream(spec.seed, spec.repetition, "actuation");
   perform.object_centre = spec.object_centre;
   perform.believe_truth = Substituted(spec, "object_pose");
-  perform.video = file(output.video, "grasp.mp4");
+  perform.exact_arm = Substituted(spec, "arm");
+  perform.exact_fingers = Substituted(spec, "finger_joints");
+  perform.video = PathIn(output, output.video, "grasp.mp4");
   perform.annotate = output.annotate;
-  perform.motion = file(output.trajectories, "motion.csv");
-  perform.trajectory = file(output.trajectories, "trajectory.csv");
-  TrialResult performed = PerformGrasp(grasp, scene, perform);
+  perform.motion = PathIn(output, output.trajectories, "motion.csv");
+  perform.trajectory = PathIn(output, output.trajectories, "trajectory.csv");
+  if (spec.baseline != "none" && spec.baseline != "open_hand") {
+    perform.baseline = BaselineRequest{spec.baseline, {}, {}};
+    if (spec.baseline == "playback") {
+      perform.baseline->demonstrated =
+          DemonstratedTips(*learned->demonstration, learned->grasp, kPlaybackSteps);
+    }
+  }
+  TrialResult performed = PerformGrasp(learned->grasp, scene, perform);
   result.outcome = performed.outcome;
   result.message = performed.message;
   result.phase = performed.phase;

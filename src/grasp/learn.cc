@@ -5,8 +5,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "demonstration/half_seen.h"
-#include "demonstration/steady_hand.h"
 #include "grasp/aperture.h"
 #include "grasp/generate_fingers.h"
 #include "grasp/grasp_frame.h"
@@ -16,6 +14,7 @@
 #include "grasp/learn_reach.h"
 #include "grasp/learn_segment.h"
 #include "grasp/learn_track.h"
+#include "grasp/shown_reach.h"
 #include "grasp/spring_system.h"
 
 namespace springgrasp {
@@ -25,8 +24,7 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kNominalHandLength = 0.189;  // m, of the relaxed tips; MMM hand at 1.75 m
-constexpr double kContactWindow = 0.08;       // s, after the contact instant
+constexpr double kContactWindow = 0.08;  // s, after the contact instant
 
 // Tips of the relaxed hand, m, at the demonstrator's hand length.
 Fingertips RelaxedTips(const LearnOptions& options) {
@@ -138,9 +136,6 @@ Fingertips ContactNormals(const Grasp& grasp, const Fingertips& p_HC) {
   return normals;
 }
 
-// The speed that noise alone leaves in smoothed positions: what a hand at rest seems to move by.
-double SpeedOfNoise(double noise) { return 8 * noise; }  // 1/s: deviation after a 5 Hz low-pass
-
 // Replaces a grasp by what its own file says, so that the value in memory and the one read back
 // are the same to the bit.
 Grasp AsWritten(Grasp grasp) {
@@ -189,27 +184,12 @@ Grasp LearnGrasp(const Demonstration& shown, const LearnOptions& options) {
       "profile is '{}', expected human, paper or unforced", options.profile);
 
   // The hand's movement, and where in it the reach lies.
-  const Demonstration demonstration = WithSteadyHand(WithoutHalfSeenTips(shown), grasp.involved);
-  HandTrack track = MakeHandTrack(demonstration);
+  const ShownReach reach_shown = FindShownReach(shown, options.type, grasp.involved);
+  const Demonstration& demonstration = reach_shown.demonstration;
+  const PerFinger<bool>& closing = reach_shown.closing;
+  const ReachSegment& segment = reach_shown.segment;
+  HandTrack track = reach_shown.track;
   grasp.observed = track.observed;
-  PerFinger<bool> closing = grasp.involved;
-  bool any = false;
-  for (int i = kIndex; i < kNumFingers; ++i) {
-    closing[i] = grasp.involved[i] && track.observed[i];
-    any = any || closing[i];
-  }
-  ThrowUnless(any, "{}: no finger of a {} was seen beside the thumb", demonstration.source,
-              options.type);
-  const ReachSegment segment =
-      FindReach(HandSpeed(track), ThumbFingerSpan(track, closing), track.dt,
-                SpeedOfNoise(track.hand_noise), 0.5 * track.tip_noise);
-  ThrowUnless(segment.contact - segment.begin >= 10,
-              "{}: the movement lasts {:.2f} s, too short to learn from", demonstration.source,
-              (segment.contact - segment.begin) * track.dt);
-
-  // A hand moves no faster than its reach lets it: what is left is the tracker's.
-  track = MakeHandTrack(demonstration,
-                        kReachBandwidth / ((segment.contact - segment.begin) * track.dt));
 
   // Frames at contact: H (where it was not recorded), G, O.
   const Pose X_HG_nominal = NominalGraspInHand(options);

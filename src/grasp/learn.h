@@ -35,7 +35,9 @@ struct LearnOptions {
 // demonstration has too little to learn from: no thumb, no other involved finger, no movement.
 Grasp LearnGrasp(const Demonstration& shown, const LearnOptions& options);
 
-// Tips of a relaxed right hand in H, m, for a hand length of 0.189 m.
+inline constexpr double kNominalHandLength = 0.189;  // m, of the MMM hand at 1.75 m
+
+// Tips of a relaxed right hand in H, m, at the nominal length.
 PerFinger<Eigen::Vector3d> DefaultRelaxedTips();
 // Grasp frame in H of a pinch, for a hand length of 0.189 m.
 Pose DefaultGraspInHand();

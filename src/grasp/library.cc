@@ -71,6 +71,10 @@ std::vector<LibraryEntry> ReadLibrary(const std::string& folder) {
 
 std::string ShippedLibrary() { return SourceFolder() + "/models/grasps"; }
 
+std::string DemonstrationOfEntry(const std::string& path) {
+  return std::filesystem::path(path).replace_extension(".csv");
+}
+
 std::vector<std::string> CheckGrasp(const Grasp& grasp) {
   std::vector<std::string> wrong;
   const DimensionlessGains gains = GainsOf(grasp);

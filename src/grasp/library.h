@@ -21,6 +21,9 @@ std::vector<LibraryEntry> ReadLibrary(const std::string& folder);
 // The shipped one, models/grasps.
 std::string ShippedLibrary();
 
+// The demonstration that an entry was learned from, if it is kept: the CSV beside the YAML.
+std::string DemonstrationOfEntry(const std::string& path);
+
 // What is wrong with a grasp, a sentence each; empty if nothing is: springs over-damped, every
 // contact ray on the object, and on its own object the involved tips end within 1 mm of their
 // contacts (profile human) without running away.

@@ -32,4 +32,35 @@ Grasp EncloseAlongAxis(const Grasp& grasp, const Shape& shape) {
   return turned;
 }
 
+void TakeContacts(const Grasp& from, Grasp& to) {
+  to.rays = from.rays;
+  to.clearance = from.clearance;
+  to.X_OH = from.X_OH;
+  to.X_HG = from.X_HG;
+  to.X_HP = from.X_HP;
+}
+
+void TakeSprings(const Grasp& from, Grasp& to) {
+  to.mass = from.mass;
+  to.kc = from.kc;
+  to.dc = from.dc;
+  to.edges = from.edges;
+  to.ambient_damping = from.ambient_damping;
+  to.reach_gain = from.reach_gain;
+  to.delay = from.delay;
+  to.closing = from.closing;
+  to.holding = from.holding;
+  to.ratio = from.ratio;
+  to.max_ratio = from.max_ratio;
+  to.switch_rule = from.switch_rule;
+  to.t_switch = from.t_switch;
+  to.offset = from.offset;
+  to.velocity = from.velocity;
+  to.opening = from.opening;
+  to.opening_bend = from.opening_bend;
+  to.bend = from.bend;
+  to.lag = from.lag;
+  to.scales.x0 = from.scales.x0;
+}
+
 }  // namespace springgrasp

@@ -13,4 +13,9 @@ namespace springgrasp {
 // as they are.
 Grasp EncloseAlongAxis(const Grasp& grasp, const Shape& shape);
 
+// Parts of one grasp in the place of another's, of the same type: the contacts and the frames that
+// belong to them; the springs and all that drives them.
+void TakeContacts(const Grasp& from, Grasp& to);
+void TakeSprings(const Grasp& from, Grasp& to);
+
 }  // namespace springgrasp

@@ -115,6 +115,22 @@ void RobotIo::Place(const ArmVector& arm_q, const HandVector& hand_q,
   for (int i = 0; i < layout_->num_joints(); ++i) data.qpos[hand_qpos_[i]] = hand_q[i];
 }
 
+void RobotIo::MoveArm(const ArmVector& q, const ArmVector& qd, Simulation& simulation) const {
+  mjData& data = simulation.mutable_data();
+  for (int i = 0; i < kNumArmJoints; ++i) {
+    data.qpos[arm_qpos_[i]] = q[i];
+    data.qvel[arm_dof_[i]] = qd[i];
+  }
+}
+
+void RobotIo::MoveHand(const HandVector& q, const HandVector& qd, Simulation& simulation) const {
+  mjData& data = simulation.mutable_data();
+  for (int i = 0; i < layout_->num_joints(); ++i) {
+    data.qpos[hand_qpos_[i]] = q[i];
+    data.qvel[hand_dof_[i]] = qd[i];
+  }
+}
+
 Pose RobotIo::HandPose(const Simulation& simulation) const {
   const mjData& data = simulation.data();
   return PoseFromXmat(data.site_xpos + 3 * hand_site_, data.site_xmat + 9 * hand_site_);

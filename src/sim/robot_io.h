@@ -26,6 +26,10 @@ class RobotIo {
   // Sets joints (not velocities); call simulation.Forward() afterwards.
   void Place(const ArmVector& arm_q, const HandVector& hand_q, Simulation& simulation) const;
 
+  // Sets joints and their velocities; for ideal drives, in the place of Write.
+  void MoveArm(const ArmVector& q, const ArmVector& qd, Simulation& simulation) const;
+  void MoveHand(const HandVector& q, const HandVector& qd, Simulation& simulation) const;
+
   // Hand frame and pad centres now (truth; for records, not for control).
   Pose HandPose(const Simulation& simulation) const;
   Eigen::Vector3d Fingertip(const Simulation& simulation, int finger) const;

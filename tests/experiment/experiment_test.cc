@@ -140,10 +140,10 @@ TEST(ExperimentTest, TrialsThatSeeTheSameStandInOneGroup) {
 TEST(ExperimentTest, OpenHandStandsBesideEachTrialWithTheSameDraws) {
   const TemporaryFolder folder;
   const auto trials =
-      ExpandExperiment(SmallExperiment(folder, kSmallExperiment, {"baseline=open_hand"}));
+      ExpandExperiment(SmallExperiment(folder, kSmallExperiment, {"baselines=[open_hand]"}));
   ASSERT_EQ(trials.size(), 20u);
-  EXPECT_FALSE(trials[2].spec.open_hand);
-  EXPECT_TRUE(trials[3].spec.open_hand);
+  EXPECT_EQ(trials[2].spec.baseline, "none");
+  EXPECT_EQ(trials[3].spec.baseline, "open_hand");
   EXPECT_EQ(trials[2].spec.repetition, trials[3].spec.repetition);
   EXPECT_NE(trials[2].id, trials[3].id);
 }

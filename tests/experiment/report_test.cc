@@ -72,7 +72,7 @@ TEST(TableTest, SetsTheOpenHandBesideEachRecording) {
   shown.plan.demonstration = "pinch_20mm_1";
   StoredTrial open = Trial("pinch", 0, Outcome::kMissed, 0);
   open.plan.demonstration = "pinch_20mm_1";
-  open.plan.open_hand = true;
+  open.plan.baseline = "open_hand";
   EXPECT_THAT(RecordingTable({shown, open}),
               HasSubstr("pinch  pinch_20mm_1  2.5          -                success  missed"));
   EXPECT_THAT(OutcomeTable({shown, open}), HasSubstr("pinch (open hand)"));
