@@ -33,12 +33,10 @@ void SenseContacts(const PneumaticHandModel& model, const ContactSettings& setti
 }
 
 PerFinger<double> PadForcesAlong(const HandLayout& layout, const KinematicTree& hand,
-                                 const PerFinger<int>& tip_frames, const HandVector& q,
+                                 const PerFinger<int>& tip_frames, const std::vector<Pose>& X_HB,
                                  const ValveVector& torque, const Eigen::Vector3d& axis_H) {
   constexpr double kSingular = 3e-5;  // m^2: a straight finger feels nothing along itself
-  std::vector<Pose> X_HB;
-  ForwardKinematics(hand, q, X_HB);
-  Eigen::MatrixXd J(6, hand.num_joints());
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMaxHandJoints> J(6, hand.num_joints());
   PerFinger<double> force;
   for (int f = 0; f < kNumFingers; ++f) {
     FrameJacobian(hand, X_HB, tip_frames[f], J);

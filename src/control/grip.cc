@@ -9,18 +9,16 @@ namespace {
 
 struct Pads {
   PerFinger<Eigen::Vector3d> p_HF;
-  std::vector<Pose> X_HB;
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();  // thumb to virtual finger, unit
   int opposed = 0;                                 // fingers
 };
 
-Pads PadsAt(const KinematicTree& hand, const PerFinger<int>& tip_frames, const HandVector& q,
-            const PerFinger<bool>& involved) {
+Pads PadsAt(const KinematicTree& hand, const PerFinger<int>& tip_frames,
+            const std::vector<Pose>& X_HB, const PerFinger<bool>& involved) {
   Pads pads;
-  ForwardKinematics(hand, q, pads.X_HB);
   Eigen::Vector3d virtual_finger = Eigen::Vector3d::Zero();
   for (int f = 0; f < kNumFingers; ++f) {
-    pads.p_HF[f] = FramePose(hand, pads.X_HB, tip_frames[f]).translation();
+    pads.p_HF[f] = FramePose(hand, X_HB, tip_frames[f]).translation();
     if (f == kThumb || !involved[f]) continue;
     virtual_finger += pads.p_HF[f];
     ++pads.opposed;
@@ -34,36 +32,38 @@ Pads PadsAt(const KinematicTree& hand, const PerFinger<int>& tip_frames, const H
 }  // namespace
 
 GripTorque FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
-                               const HandVector& q, const FingertipGrip& grip) {
+                               const std::vector<Pose>& X_HB, const FingertipGrip& grip) {
   GripTorque result;
-  result.torque = HandVector::Zero(q.size());
-  const Pads pads = PadsAt(hand, tip_frames, q, grip.involved);
+  result.torque = HandVector::Zero(hand.num_joints());
+  const Pads pads = PadsAt(hand, tip_frames, X_HB, grip.involved);
   if (pads.opposed == 0) return result;
   double shares = 0;
   for (int f = kIndex; f < kNumFingers; ++f) shares += grip.involved[f] ? grip.share[f] : 0;
-  Eigen::MatrixXd J(6, hand.num_joints());
+  HandJacobian J(6, hand.num_joints());
   for (int f = 0; f < kNumFingers; ++f) {
     if (!grip.involved[f]) continue;
     const bool thumb = f == kThumb;
     result.force[f] = thumb ? grip.force : grip.force / pads.opposed;
     const double pressed = thumb ? grip.force : -grip.force * grip.share[f] / shares;
-    FrameJacobian(hand, pads.X_HB, tip_frames[f], J);
+    FrameJacobian(hand, X_HB, tip_frames[f], J);
     result.torque += J.topRows<3>().transpose() * (pressed * pads.axis);
   }
   return result;
 }
 
-Eigen::MatrixXd ClosingDirections(const KinematicTree& hand, const PerFinger<int>& tip_frames,
-                                  const HandVector& q, const PerFinger<bool>& involved) {
-  const Pads pads = PadsAt(hand, tip_frames, q, involved);
-  Eigen::MatrixXd directions(q.size(), 0);
-  Eigen::MatrixXd thumb(6, hand.num_joints()), finger(6, hand.num_joints());
-  FrameJacobian(hand, pads.X_HB, tip_frames[kThumb], thumb);
+HandDirections ClosingDirections(const KinematicTree& hand, const PerFinger<int>& tip_frames,
+                                 const std::vector<Pose>& X_HB, const PerFinger<bool>& involved) {
+  const Pads pads = PadsAt(hand, tip_frames, X_HB, involved);
+  HandDirections directions(hand.num_joints(), 0);
+  HandJacobian thumb(6, hand.num_joints()), finger(6, hand.num_joints());
+  FrameJacobian(hand, X_HB, tip_frames[kThumb], thumb);
   for (int f = kIndex; f < kNumFingers; ++f) {
     if (!involved[f]) continue;
-    FrameJacobian(hand, pads.X_HB, tip_frames[f], finger);
-    Eigen::VectorXd d = (thumb - finger).topRows<3>().transpose() * pads.axis;
-    d -= directions * (directions.transpose() * d);
+    FrameJacobian(hand, X_HB, tip_frames[f], finger);
+    HandVector d = (thumb - finger).topRows<3>().transpose() * pads.axis;
+    for (int k = 0; k < directions.cols(); ++k) {
+      d -= directions.col(k).dot(d) * directions.col(k);
+    }
     const double norm = d.norm();
     if (norm < 1e-9) continue;
     directions.conservativeResize(Eigen::NoChange, directions.cols() + 1);
@@ -73,12 +73,10 @@ Eigen::MatrixXd ClosingDirections(const KinematicTree& hand, const PerFinger<int
 }
 
 GripTorque EnclosingGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
-                               const HandVector& q, const EnclosingGrip& grip) {
+                               const std::vector<Pose>& X_HB, const EnclosingGrip& grip) {
   GripTorque result;
-  result.torque = HandVector::Zero(q.size());
-  std::vector<Pose> X_HB;
-  ForwardKinematics(hand, q, X_HB);
-  Eigen::MatrixXd J(6, hand.num_joints());
+  result.torque = HandVector::Zero(hand.num_joints());
+  HandJacobian J(6, hand.num_joints());
   // Force per torque of each finger's last joint: one over the pad's distance from its axis.
   PerFinger<double> force_per_torque = {};
   double sum = 0;

@@ -2,13 +2,19 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
+#include <vector>
 
 #include "base/fingers.h"
 #include "control/robot_state.h"
 #include "kinematics/kinematic_tree.h"
 
 namespace springgrasp {
+
+// All below allocate nothing: the poses X_HB of the hand's bodies at its posture come from
+// ForwardKinematics.
+using HandJacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMaxHandJoints>;
+using HandDirections =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxHandJoints, kNumFingers>;
 
 // Torques of a grip, and the force of each finger on the object that they ask for.
 struct GripTorque {
@@ -27,15 +33,15 @@ struct FingertipGrip {
   PerFinger<double> share = {1, 1, 1, 1, 1};
 };
 
-// Joint torques J' F of a fingertip grip at posture q of the hand (tree with root H; frames
-// hand_?_<finger>_tip given by index), in the order of q.
+// Joint torques J' F of a fingertip grip of the hand (tree with root H; frames hand_?_<finger>_tip
+// given by index), in the order of its joints.
 GripTorque FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
-                               const HandVector& q, const FingertipGrip& grip);
+                               const std::vector<Pose>& X_HB, const FingertipGrip& grip);
 
 // Directions in joint space in which such a grip closes: one for each finger opposed to the thumb,
 // orthonormal columns.
-Eigen::MatrixXd ClosingDirections(const KinematicTree& hand, const PerFinger<int>& tip_frames,
-                                  const HandVector& q, const PerFinger<bool>& involved);
+HandDirections ClosingDirections(const KinematicTree& hand, const PerFinger<int>& tip_frames,
+                                 const std::vector<Pose>& X_HB, const PerFinger<bool>& involved);
 
 // An enclosing grip: the fingers press with their last phalanx what thumb and palm hold against.
 // The last joints of all fingers have the same torque, as one valve may bend several, so that the
@@ -48,7 +54,7 @@ struct EnclosingGrip {
   double proximal = 1.25, thumb_proximal = 1.25, thumb_distal = 0.25, palm = 0.625;
 };
 GripTorque EnclosingGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
-                               const HandVector& q, const EnclosingGrip& grip);
+                               const std::vector<Pose>& X_HB, const EnclosingGrip& grip);
 
 // Thumb force that holds a mass against its weight and `acceleration` by friction of two opposed
 // contacts, times a safety factor; N.

@@ -1,16 +1,25 @@
 #include "control/grip_controller.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace springgrasp {
 
 GripController::GripController(const PneumaticHandModel& model, const KinematicTree& hand,
                                const PerFinger<int>& tip_frames, const GripTask& task,
                                const GripSettings& settings)
-    : model_(model), hand_(hand), tip_frames_(tip_frames), task_(task), settings_(settings) {}
+    : model_(model), hand_(hand), tip_frames_(tip_frames), task_(task), settings_(settings) {
+  X_HB_.reserve(hand.nodes.size());
+  for (int f = 0; f < kNumFingers; ++f) {
+    for (std::size_t node = 0; node < hand.nodes.size(); ++node) {
+      if (hand.nodes[node].joint == 1 + 2 * f) knuckles_[f] = static_cast<int>(node);
+    }
+  }
+}
 
 ValveVector GripController::Control(const RobotState& state, const HandTarget& reference,
                                     GripStage stage, double dt) {
+  ForwardKinematics(hand_, state.hand_q, X_HB_);
   const PerFinger<bool> touched = sense_.touching;
   SenseContacts(model_, settings_.contact, state, stage == GripStage::kFree, dt, sense_);
   HandTarget target = reference;
@@ -32,9 +41,10 @@ ValveVector GripController::Control(const RobotState& state, const HandTarget& r
         }
       }
     } else {
-      closing_ = std::min(settings_.max_closing, closing_ + settings_.closing_rate * dt);
+      CloseOn(reference, true, dt);
     }
   }
+  if (stage == GripStage::kClosing) CloseOn(reference, false, dt);
   if (pressing_) {
     Press(state, dt, target);
   } else {
@@ -46,13 +56,26 @@ ValveVector GripController::Control(const RobotState& state, const HandTarget& r
           target.q[j] = touched_[j];
           target.qd[j] = target.qdd[j] = 0;
         } else {
-          target.q[j] += closing_;
+          target.q[j] += closing_[f];
         }
       }
     }
   }
   return ControlHand(model_, held_ ? settings_.holding : settings_.moving, target, state, dt,
                      memory_);
+}
+
+// Fingers that did not touch where they were planned to go on, as long as the plan moves none of
+// their joints; before `all` must, only those that the plan has moved.
+void GripController::CloseOn(const HandTarget& plan, bool all, double dt) {
+  constexpr double kMoving = 0.02;  // rad/s
+  for (int f = 0; f < kNumFingers; ++f) {
+    const bool moves = plan.qd.size() > 0 && (std::abs(plan.qd[1 + 2 * f]) > kMoving ||
+                                              std::abs(plan.qd[2 + 2 * f]) > kMoving);
+    planned_closing_[f] = planned_closing_[f] || moves;
+    if (moves || !(all || planned_closing_[f]) || sense_.touching[f]) continue;
+    closing_[f] = std::min(settings_.max_closing, closing_[f] + settings_.closing_rate * dt);
+  }
 }
 
 void GripController::Press(const RobotState& state, double dt, HandTarget& target) {
@@ -62,16 +85,16 @@ void GripController::Press(const RobotState& state, double dt, HandTarget& targe
   if (!held_ && pressed_ > settings_.ramp + settings_.settle) {
     held_ = true;
     reference_ = state.hand_q;
-    aperture_ = Aperture(state.hand_q);
+    aperture_ = Aperture();
   }
   if (held_) WatchSlip(state, dt);
 
   HandVector posture = reference_ - state.hand_q;
   GripTorque grip;
   if (task_.enclosing) {
-    grip = EnclosingGripTorque(hand_, tip_frames_, state.hand_q, {task_.involved, force});
+    grip = EnclosingGripTorque(hand_, tip_frames_, X_HB_, {task_.involved, force});
   } else {
-    const PerFinger<double> sensed = SensedForce(state);
+    const PerFinger<double> sensed = SensedForce();
     double both = 0;
     for (const double n : sensed) both += n / 2;
     const double limit = settings_.max_correction * force;
@@ -86,13 +109,14 @@ void GripController::Press(const RobotState& state, double dt, HandTarget& targe
           share_[f] + settings_.force_integral * (even - sensed[f]) / force * opposed * dt,
           1 - settings_.max_correction, 1 + settings_.max_correction);
     }
-    grip = FingertipGripTorque(hand_, tip_frames_, state.hand_q,
+    grip = FingertipGripTorque(hand_, tip_frames_, X_HB_,
                                {task_.involved, force + correction_, share_});
     for (double& n : grip.force) n *= force / (force + correction_);
     // Along these the force decides, the posture in all others.
-    const Eigen::MatrixXd closing =
-        ClosingDirections(hand_, tip_frames_, state.hand_q, task_.involved);
-    posture -= closing * (closing.transpose() * posture);
+    const HandDirections closing = ClosingDirections(hand_, tip_frames_, X_HB_, task_.involved);
+    for (int k = 0; k < closing.cols(); ++k) {
+      posture -= closing.col(k).dot(posture) * closing.col(k);
+    }
   }
   target_force_ = grip.force;
   target.torque = grip.torque;
@@ -114,12 +138,16 @@ void GripController::Press(const RobotState& state, double dt, HandTarget& targe
 
 void GripController::WatchSlip(const RobotState& state, double dt) {
   since_regrip_ += dt;
-  const double aperture = Aperture(state.hand_q);
-  // Fingers that enclose an object come closer while they settle.
-  const double distance = (task_.enclosing ? 6 : 1) * settings_.regrip_distance;
-  if (aperture_ - aperture < distance || since_regrip_ < settings_.regrip_pause) {
+  const double aperture = Aperture();
+  // Fingers that enclose an object settle on it for long: only what is faster counts.
+  if (task_.enclosing) aperture_ += dt / (settings_.settling + dt) * (aperture - aperture_);
+  const double distance =
+      task_.enclosing ? settings_.enclosing_regrip_distance : settings_.regrip_distance;
+  if (since_regrip_ < settings_.regrip_pause) {
+    if (task_.enclosing) aperture_ = aperture;
     return;
   }
+  if (aperture_ - aperture < distance) return;
   force_scale_ *= settings_.regrip_factor;
   aperture_ = aperture;
   reference_ = state.hand_q;
@@ -127,35 +155,34 @@ void GripController::WatchSlip(const RobotState& state, double dt) {
   ++regrips_;
 }
 
-double GripController::Aperture(const HandVector& q) const {
-  std::vector<Pose> X_HB;
-  ForwardKinematics(hand_, q, X_HB);
+double GripController::Aperture() const {
+  Eigen::Vector3d others = Eigen::Vector3d::Zero(), knuckles = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (int f = kIndex; f < kNumFingers; ++f) {
+    if (!task_.involved[f]) continue;
+    others += FramePose(hand_, X_HB_, tip_frames_[f]).translation();
+    knuckles += X_HB_[knuckles_[f]].translation();
+    ++count;
+  }
+  const Eigen::Vector3d against =
+      task_.enclosing ? Eigen::Vector3d(knuckles / std::max(1, count))
+                      : Eigen::Vector3d(FramePose(hand_, X_HB_, tip_frames_[kThumb]).translation());
+  return (others / std::max(1, count) - against).norm();
+}
+
+PerFinger<double> GripController::SensedForce() const {
+  PerFinger<double> sensed{};
+  if (X_HB_.empty()) return sensed;
   Eigen::Vector3d others = Eigen::Vector3d::Zero();
   int count = 0;
   for (int f = kIndex; f < kNumFingers; ++f) {
     if (!task_.involved[f]) continue;
-    others += FramePose(hand_, X_HB, tip_frames_[f]).translation();
+    others += FramePose(hand_, X_HB_, tip_frames_[f]).translation();
     ++count;
   }
-  return (others / std::max(1, count) - FramePose(hand_, X_HB, tip_frames_[kThumb]).translation())
-      .norm();
-}
-
-PerFinger<double> GripController::SensedForce(const RobotState& state) const {
-  std::vector<Pose> X_HB;
-  ForwardKinematics(hand_, state.hand_q, X_HB);
-  PerFinger<Eigen::Vector3d> p;
-  Eigen::Vector3d others = Eigen::Vector3d::Zero();
-  int count = 0;
-  for (int f = 0; f < kNumFingers; ++f) {
-    p[f] = FramePose(hand_, X_HB, tip_frames_[f]).translation();
-    if (f == kThumb || !task_.involved[f]) continue;
-    others += p[f];
-    ++count;
-  }
-  const Eigen::Vector3d axis = (others / std::max(1, count) - p[kThumb]).normalized();
-  PerFinger<double> sensed =
-      PadForcesAlong(model_.layout, hand_, tip_frames_, state.hand_q, sense_.torque, axis);
+  const Eigen::Vector3d p_thumb = FramePose(hand_, X_HB_, tip_frames_[kThumb]).translation();
+  const Eigen::Vector3d axis = (others / std::max(1, count) - p_thumb).normalized();
+  sensed = PadForcesAlong(model_.layout, hand_, tip_frames_, X_HB_, sense_.torque, axis);
   for (int f = 0; f < kNumFingers; ++f) {
     if (!task_.involved[f]) sensed[f] = 0;
     if (f != kThumb) sensed[f] = -sensed[f];

@@ -1,8 +1,11 @@
 // The hand from its reach to the held object: follows the planned angles, recognises by pressure
 // and angle where each finger touches, presses with a chosen force once the opposed fingers do, and
-// regrips when they come closer together than they were, which the object only lets them if it
-// slips. At the fingertips the force is held by what is sensed of it.
+// regrips when pads come closer together than they were (enclosing: curl in faster than fingers
+// that settle), which the object only lets them if it slips. At the fingertips the force is held by
+// what is sensed of it.
 #pragma once
+
+#include <vector>
 
 #include "control/contact_sense.h"
 #include "control/grip.h"
@@ -34,6 +37,8 @@ struct GripSettings {
   double force_integral = 3;        // 1/s, of the sensed force's error
   double max_correction = 0.4;      // of the force
   double regrip_distance = 0.0015;  // m, that thumb and fingers come closer when the object slips
+  double enclosing_regrip_distance = 0.003;  // m, that the fingers' pads come nearer to their bases
+  double settling = 0.3;            // s, within that time
   double regrip_factor = 1.3;       // on the force
   double regrip_pause = 0.15;       // s
 };
@@ -54,7 +59,7 @@ class GripController {
                  const PerFinger<int>& tip_frames, const GripTask& task,
                  const GripSettings& settings = {});
 
-  // Valve commands (bar). `reference`: what the plan wants of the joints now. Stage kFree: nothing
+  // Valve commands (bar). Allocates in its first call only. `reference`: what the plan wants of the joints now. Stage kFree: nothing
   // is near; kClosing: fingers stop where they touch; kPressing: they grip.
   ValveVector Control(const RobotState& state, const HandTarget& reference, GripStage stage,
                       double dt);
@@ -62,26 +67,30 @@ class GripController {
   bool held() const { return held_; }
   int regrips() const { return regrips_; }
   const PerFinger<bool>& touching() const { return sense_.touching; }
-  // Asked for now, and as the robot feels it along the grip's axis; N.
+  // Asked for, and as the robot feels it along the grip's axis, in the last call; N.
   const PerFinger<double>& target_force() const { return target_force_; }
-  PerFinger<double> SensedForce(const RobotState& state) const;
+  PerFinger<double> SensedForce() const;
 
  private:
   void Press(const RobotState& state, double dt, HandTarget& target);
   void WatchSlip(const RobotState& state, double dt);
-  double Aperture(const HandVector& q) const;
+  void CloseOn(const HandTarget& plan, bool all, double dt);
+  double Aperture() const;
 
   const PneumaticHandModel model_;
   const KinematicTree& hand_;
   const PerFinger<int> tip_frames_;
   const GripTask task_;
   const GripSettings settings_;
+  PerFinger<int> knuckles_ = {};  // bodies that the proximal joints turn
+  std::vector<Pose> X_HB_;         // at the posture of the last call
   HandControlState memory_;
   ContactSense sense_;
   HandVector touched_;               // rad, where each touching finger stopped
   HandVector reference_;             // rad, posture that is held
   double waited_ = 0, pressed_ = 0;  // s
-  double closing_ = 0;               // rad
+  PerFinger<double> closing_ = {};   // rad beyond the plan
+  PerFinger<bool> planned_closing_ = {};  // moved by the plan since the hand is there
   bool pressing_ = false, held_ = false;
   double correction_ = 0;  // N
   PerFinger<double> share_ = {1, 1, 1, 1, 1};

@@ -129,7 +129,7 @@ class Performer {
       performance_.largest_force[f] = std::max(performance_.largest_force[f], load_now.normal[f]);
     }
     ++force_window_.count;
-    const PerFinger<double> sensed = grip_.SensedForce(state);
+    const PerFinger<double> sensed = grip_.SensedForce();
     for (int f = 0; f < kNumFingers; ++f) {
       force_window_.target[f] += grip_.target_force()[f];
       force_window_.sensed[f] += sensed[f];
@@ -158,7 +158,7 @@ class Performer {
     sample.state = state;
     sample.hand_planned = hand_planned_;
     sample.force_target = grip_.target_force();
-    sample.force_sensed = grip_.SensedForce(state);
+    sample.force_sensed = grip_.SensedForce();
     sample.command = command;
     performance_.trajectory.push_back(sample);
   }

@@ -5,27 +5,26 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "control/hanging_hand.h"
+#include "experiment/closing_plan.h"
 #include "experiment/grasp_requests.h"
 #include "grasp/generate.h"
 #include "kinematics/hand_motion.h"
 #include "kinematics/reach_plan.h"
 #include "kinematics/shape_distance.h"
 #include "kinematics/smooth_hand_ik.h"
-#include "motion/minimum_jerk.h"
 
 namespace springgrasp {
 namespace {
 
 // Slower reaches are tried where the arm is not fast enough for the demonstrated one.
 constexpr double kSlower[] = {1.0, 1.4, 2.0};
-constexpr double kClosed = 1.35;  // fraction of T at which the fingers are planned closed
 constexpr double kApproachClearance = 0.02;  // m, between object and open hand on its way
 constexpr double kWay = 0.72;                // of T, then the object enters the hand
 // The hand is not fully open on its way yet, so its open outline may cut the object a little (tuned
 // with experiments/first_grasps, seeds below 1000).
 constexpr double kBlocked = -0.01;         // m, less than this on the way and another pose is tried
 constexpr double kWaitClearance = 0.015;   // m, between object and waiting fingers
-constexpr double kMaxEarlyFlexion = 0.25;  // rad
 constexpr double kFastest = 1.5;           // s, reach of the robot's arm
 
 // Smallest distance of the open hand from the object over the first `samples` of the way, m.
@@ -42,56 +41,38 @@ double ClearanceOnTheWay(const RobotHand& hand, const Shape& shape, const Pose& 
   return clearance;
 }
 
-// The chambers fill slower than a human hand closes, so the robot's closing waits for its arm: the
-// fingers follow the human-like motion up to the widest aperture, hold it (opened at least as far
-// as `q_wait`) until the arm has arrived at T, and close on the contact posture until kClosed T.
-std::vector<Eigen::VectorXd> CloseAfterArrival(
-    const RobotHand& hand, const HandMotionResult& motion, const PerFinger<bool>& involved,
-    const Eigen::VectorXd& q_wait, const Eigen::VectorXd& q_contact, double dt, double T) {
-  // Widest aperture within the part of the reach where humans have it.
-  const auto at = [&](double t) {
-    return std::min(motion.q.size() - 1, static_cast<std::size_t>(std::lround(t / dt)));
-  };
-  std::size_t widest = at(0.3 * T);
-  double aperture = -1;
-  for (std::size_t i = at(0.3 * T); i <= at(0.75 * T); ++i) {
-    double sum = 0;
-    for (int f = kIndex; f < kNumFingers; ++f) {
-      if (involved[f]) sum += (motion.p_HF[i][f] - motion.p_HF[i][kThumb]).norm();
-    }
-    if (sum <= aperture) continue;
-    aperture = sum;
-    widest = i;
+// In a hand's frame H, m/s^2.
+Eigen::Vector3d GravityIn(const Pose& X_WH) {
+  return X_WH.linear().transpose() * Eigen::Vector3d(0, 0, -9.81);
+}
+
+PneumaticHandModel DrivesOf(const RobotHand& hand) {
+  return PneumaticHandModel(hand.opposition >= 0 ? OppositionHand() : DocumentedHand());
+}
+
+// The contact posture with the joints where the hand that holds the object at X_WO can have them.
+ContactPosture SolveHangingPosture(const RobotHand& hand, const ContactRequest& contacts,
+                                   const Pose& X_WO) {
+  constexpr int kRounds = 3;
+  constexpr double kClose = 0.01;  // rad
+  const PneumaticHandModel drives = DrivesOf(hand);
+  ContactPosture posture = SolveContactPosture(hand, contacts);
+  for (int round = 0; round < kRounds; ++round) {
+    const RobotHand hanging =
+        HangingHand(drives, hand, GravityIn(X_WO * posture.X_HO.inverse()), posture.q);
+    if ((hanging.tree.lower - posture.q).maxCoeff() < kClose) break;
+    posture = SolveContactPosture(hanging, contacts);
   }
-  // Uninvolved fingers and the palm are in place when the hand arrives.
-  Eigen::VectorXd q_arrive = q_contact;
-  for (int f = 0; f < kNumFingers; ++f) {
-    if (!involved[f]) continue;
-    for (const int j : {hand.fingers[f].j0, hand.fingers[f].j1}) {
-      q_arrive[j] = std::min(motion.q[widest][j], q_wait[j]);
-    }
-  }
-  // Thumb and fingers of this hand cross when they curl together: before the arrival none flexes
-  // much more than it will have to.
-  std::vector<Eigen::VectorXd> q = motion.q;
-  for (Eigen::VectorXd& posture : q) {
-    posture = posture.cwiseMin((q_arrive.array() + kMaxEarlyFlexion).matrix());
-  }
-  const std::vector<Eigen::VectorXd> human_like = q;
-  const double t_widest = static_cast<double>(widest) * dt;
+  return posture;
+}
+
+// What does not hang on the object yet hangs deeper: the joints along a way of hand poses.
+void LetHang(const RobotHand& hand, const std::vector<Pose>& X_WH,
+             std::vector<Eigen::VectorXd>& q) {
+  const PneumaticHandModel drives = DrivesOf(hand);
   for (std::size_t i = 0; i < q.size(); ++i) {
-    const double t = static_cast<double>(i) * dt;
-    if (t <= T) {
-      // Leaves the human-like motion for the waiting posture from before the widest aperture on.
-      const double u = MinimumJerkPosition(
-          std::clamp((t - 0.5 * t_widest) / (0.9 * T - 0.5 * t_widest), 0.0, 1.0));
-      q[i] = (1 - u) * human_like[std::min(i, widest)] + u * q_arrive;
-    } else {
-      const double u = MinimumJerkPosition(std::clamp((t - T) / ((kClosed - 1) * T), 0.0, 1.0));
-      q[i] = (1 - u) * q_arrive + u * q_contact;
-    }
+    q[i] = HangingPosture(drives, hand, GravityIn(X_WH[i]), q[i]);
   }
-  return q;
 }
 
 // The last posture of a baseline's way that keeps its involved fingers off the object as the hand
@@ -139,10 +120,12 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
         SolveHandMotionSmoothly(human, TipsOf(motion), {.dt = dt});
     const ContactRequest contacts =
         RequestContacts(human, body.hand, motion, q_human[ContactSample(motion, dt)]);
-    result.posture = SolveContactPosture(body.hand, contacts);
+    result.posture = SolveHangingPosture(body.hand, contacts, request.object.X_WO);
     const Pose X_GH = result.posture.X_HG.inverse();
-    const Eigen::VectorXd q_open =
-        OpenedPosture(body.hand, result.posture, generate.shape, motion.involved, 1.0);
+    const Eigen::VectorXd q_open = HangingPosture(
+        DrivesOf(body.hand), body.hand,
+        GravityIn(request.object.X_WO * result.posture.X_HO.inverse()),
+        OpenedPosture(body.hand, result.posture, generate.shape, motion.involved, 1.0));
 
     // The reach of G from where the robot's hand is, for an object turned by what it leaves free.
     const auto path = [&](const Pose& X_OF) {
@@ -243,8 +226,9 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
                        : LastClear(body.hand, hand.q, result.posture.X_HO.inverse(), generate.shape,
                                    motion.involved);
     }
-    const std::vector<Eigen::VectorXd> q_hand =
+    std::vector<Eigen::VectorXd> q_hand =
         CloseAfterArrival(body.hand, hand, motion.involved, q_wait, q_end, dt, motion.T);
+    LetHang(body.hand, planned.X_WH, q_hand);
     plan.hand = Fixed<HandVector>(q_hand);
     plan.lift = Fixed<ArmVector>(planned.lift);
     for (int axis = 0; axis < 3; ++axis) plan.shake[axis] = Fixed<ArmVector>(planned.shake[axis]);

@@ -60,6 +60,8 @@ class ArmSolutions {
   void Solve(const ArmGeometry& geometry, const Pose& X_WH, double margin = 0);
 
   const std::vector<SwivelInterval>& intervals() const { return intervals_; }
+  // Whether the elbow angle of a branch lies in its range; else the branch has no joints here.
+  bool Has(const SwivelInterval& branch) const { return FamilyOf(branch).valid; }
   // Joint angles at a swivel of a branch (inside or outside of its interval).
   SevenJoints JointsAt(const SwivelInterval& branch, double swivel) const;
   // Branch and swivel of a posture that has the solved hand pose (nearly); the interval is empty.

@@ -246,14 +246,16 @@ HandMotionResult MapHandMotion(const HumanHand& human, const RobotHand& robot,
 std::vector<Pose> ClearApproach(const RobotHand& robot, const Shape& shape,
                                 const std::vector<Pose>& X_OH, const Eigen::VectorXd& q_open,
                                 double dt, double T, double clearance, double closing) {
-  constexpr double kStep = 0.01, kMost = 0.16;         // m, offsets
-  constexpr double kNearGoal = 0.98, kApproach = 0.2;  // of T, where less clearance is unavoidable
+  constexpr double kStep = 0.01, kMost = 0.16, kMostLate = 0.06;  // m, offsets
+  constexpr double kNearGoal = 0.95, kApproach = 0.2;  // of T, where less clearance is unavoidable
   constexpr int kStride = 3;                           // samples between checks
   const int n = static_cast<int>(X_OH.size());
   if (n == 0) return {};
   const int last = std::min(n - 1, static_cast<int>(std::lround(T / dt)));
-  const double peak = std::max(0.3, 1 - 1.5 * closing);
-  const auto bump = [&](int k) {
+  // Where an offset is largest: first in the middle, then late, where the object must not enter along
+  // the fingers.
+  const double peaks[] = {std::max(0.3, 1 - 1.5 * closing), std::max(0.6, 1 - 0.8 * closing)};
+  const auto bump = [&](int k, double peak) {
     const double s = dt * k / T;
     return s < peak ? MinimumJerkPosition(s / peak) : MinimumJerkPosition((1 - s) / (1 - peak));
   };
@@ -265,33 +267,35 @@ std::vector<Pose> ClearApproach(const RobotHand& robot, const Shape& shape,
     return std::min(clearance, at_goal + (clearance - at_goal) *
                                              std::clamp((kNearGoal - s) / kApproach, 0.0, 1.0));
   };
-  const auto shortage = [&](const Eigen::Vector3d& offset_O) {
+  std::vector<Pose> path = X_OH;
+  const auto shortage = [&](const Eigen::Vector3d& offset_O, double peak) {
     double sum = 0;
     for (int k = 0; k < last; k += kStride) {
-      Pose X = X_OH[k];
-      X.translation() += bump(k) * offset_O;
+      Pose X = path[k];
+      X.translation() += bump(k, peak) * offset_O;
       sum +=
           std::max(0.0, wanted(k) - HandDistance(robot, X_HB, X, shape, kAllFingers, true) - 1e-4);
     }
     return sum;
   };
   const Eigen::Matrix3d R_OA = X_OH[last].linear() * robot.R_HA;
-  Eigen::Vector3d best = Eigen::Vector3d::Zero();
-  double least = shortage(best);
-  for (double a = kStep; least > 0 && a <= kMost; a += kStep) {
-    for (const Eigen::Vector3d& d_A :
-         {Eigen::Vector3d(-0.7, 0, 0.7), Eigen::Vector3d(-0.4, 0, 0.9),
-          Eigen::Vector3d(-0.9, 0, 0.4), Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(-1, 0, 0)}) {
-      const Eigen::Vector3d offset = a * (R_OA * d_A.normalized());
-      const double s = shortage(offset);
-      if (s < least - 1e-6) {
+  for (const double peak : peaks) {
+    const double most = peak == peaks[0] ? kMost : kMostLate;
+    Eigen::Vector3d best = Eigen::Vector3d::Zero();
+    double least = shortage(best, peak);
+    for (double a = kStep; least > 0 && a <= most; a += kStep) {
+      for (const Eigen::Vector3d& d_A :
+           {Eigen::Vector3d(-0.7, 0, 0.7), Eigen::Vector3d(-0.4, 0, 0.9),
+            Eigen::Vector3d(-0.9, 0, 0.4), Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(-1, 0, 0)}) {
+        const Eigen::Vector3d offset = a * (R_OA * d_A.normalized());
+        const double s = shortage(offset, peak);
+        if (s >= least - 1e-6) continue;
         least = s;
         best = offset;
       }
     }
+    for (int k = 0; k < last; ++k) path[k].translation() += bump(k, peak) * best;
   }
-  std::vector<Pose> path = X_OH;
-  for (int k = 0; k < last; ++k) path[k].translation() += bump(k) * best;
   return path;
 }
 

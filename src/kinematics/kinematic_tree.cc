@@ -66,4 +66,23 @@ void FrameJacobian(const KinematicTree& tree, const std::vector<Pose>& X_RB, int
   }
 }
 
+Eigen::VectorXd GravityTorques(const KinematicTree& tree, const std::vector<Pose>& X_RB,
+                               const Eigen::Vector3d& g_R) {
+  Eigen::VectorXd torque = Eigen::VectorXd::Zero(tree.num_joints());
+  for (std::size_t body = 0; body < tree.nodes.size(); ++body) {
+    if (tree.nodes[body].mass == 0) continue;
+    const Eigen::Vector3d p_RC = X_RB[body] * tree.nodes[body].p_BC;
+    const Eigen::Vector3d weight = tree.nodes[body].mass * g_R;
+    for (int b = static_cast<int>(body); b >= 0; b = tree.nodes[b].parent) {
+      const KinematicTree::Node& node = tree.nodes[b];
+      if (node.joint < 0) continue;
+      const Eigen::Vector3d axis_R = X_RB[b].linear() * node.axis;
+      const Eigen::Vector3d moves =
+          node.slide ? axis_R : Eigen::Vector3d(axis_R.cross(p_RC - X_RB[b].translation()));
+      torque[node.joint] += moves.dot(weight);
+    }
+  }
+  return torque;
+}
+
 }  // namespace springgrasp

@@ -20,6 +20,8 @@ struct KinematicTree {
     int joint = -1;                                   // index into q; -1: fixed to its parent
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // in B, through B's origin
     bool slide = false;                               // hinge (rad) or slide (m)
+    double mass = 0;                                  // kg; 0: not known
+    Eigen::Vector3d p_BC = Eigen::Vector3d::Zero();   // centre of that mass, m
   };
   // A named frame fixed to a body (a site).
   struct Frame {
@@ -51,5 +53,9 @@ Pose FramePose(const KinematicTree& tree, const std::vector<Pose>& X_RB, int fra
 // angular. `J` must be 6 x num_joints; columns of joints that do not move the frame are zero.
 void FrameJacobian(const KinematicTree& tree, const std::vector<Pose>& X_RB, int frame,
                    Eigen::Ref<Eigen::MatrixXd> J);
+
+// Torques (forces) with which gravity `g_R` (m/s^2) turns the joints, from the masses of the bodies.
+Eigen::VectorXd GravityTorques(const KinematicTree& tree, const std::vector<Pose>& X_RB,
+                               const Eigen::Vector3d& g_R);
 
 }  // namespace springgrasp

@@ -34,6 +34,7 @@ KinematicTree MirroredTree(const KinematicTree& tree, bool in_world) {
     node.X_PB = Reflected(from_world ? kWorld : kBody, node.X_PB, kBody);
     // A turn changes its sense in a mirror, a shift does not.
     node.axis = (node.slide ? 1 : -1) * kBody.cwiseProduct(node.axis);
+    node.p_BC = kBody.cwiseProduct(node.p_BC);
   }
   for (KinematicTree::Frame& frame : image.frames) {
     frame.name = RightName(frame.name);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -21,6 +22,7 @@ constexpr double kNear = 0.0025;       // m, touches once the hand presses
 constexpr double kPalmNear = 0.005;    // m, the palm carries once the fingers pull
 constexpr double kHandWidth = 0.09;    // m, an object longer than this lies under all fingers
 constexpr double kThumbRoom = 0.004;   // m
+constexpr double kLastPhalanx = 2;     // cost of one that is kPassing off
 constexpr int kPalm = -1;              // instead of a finger
 constexpr int kSamples = 6;            // along a phalanx
 
@@ -88,6 +90,36 @@ Eigen::Vector3d PressNormal(const FingerTouch& touch, double near) {
   return sum;
 }
 
+namespace {
+
+// The angle in (from, to] to which `set` can bring the finger before `gap` falls below kTouch; `to`
+// if it never does.
+double CloseUntil(double from, double to, const std::function<void(double)>& set,
+                  const std::function<double()>& gap) {
+  double open = from, closed = from;
+  bool touched = false;
+  while (!touched && open < to) {
+    closed = std::min(to, open + kCoarse);
+    set(closed);
+    touched = gap() < kTouch;
+    if (!touched) open = closed;
+  }
+  for (int i = 0; touched && i < 12; ++i) {
+    const double middle = 0.5 * (open + closed);
+    set(middle);
+    (gap() < kTouch ? closed : open) = middle;
+  }
+  set(open);
+  return open;
+}
+
+}  // namespace
+
+bool OnOneValve(const RobotHand& hand, int finger) {
+  const RobotHand::Finger& f = hand.fingers[finger];
+  return hand.valve_of[f.j0] == hand.valve_of[f.j1];
+}
+
 FingerTouch CloseFinger(const RobotHand& hand, int finger, const Pose& X_OH, const Shape& shape,
                         Eigen::VectorXd& q, const Eigen::Vector3d* wanted_n_O) {
   const RobotHand::Finger& f = hand.fingers[finger];
@@ -99,29 +131,33 @@ FingerTouch CloseFinger(const RobotHand& hand, int finger, const Pose& X_OH, con
   const auto nearest = [](const FingerTouch& touch) {
     return std::min(touch.proximal, touch.distal);
   };
+  const double low = hand.tree.lower[f.j0], high = hand.tree.upper[f.j0];
+  if (OnOneValve(hand, finger)) {
+    // Both joints turn alike until a phalanx is stopped; the last one goes on if it was the first.
+    const double from = std::max(low, hand.tree.lower[f.j1]);
+    const double to = std::min(high, hand.tree.upper[f.j1]);
+    const double both = CloseUntil(
+        from, to, [&](double angle) { q[f.j0] = q[f.j1] = angle; },
+        [&] { return nearest(touch_at(q)); });
+    if (touch_at(q).distal > 2 * kTouch) {
+      CloseUntil(
+          both, hand.tree.upper[f.j1], [&](double angle) { q[f.j1] = angle; },
+          [&] { return touch_at(q).distal; });
+    }
+    return touch_at(q);
+  }
   Eigen::VectorXd trial = q, best = q;
   FingerTouch best_touch = touch_at(q);
   double best_score = std::numeric_limits<double>::infinity();
-  const double low = hand.tree.lower[f.j0], high = hand.tree.upper[f.j0];
   for (int b = 0; b < kBends; ++b) {
     const double bend =
         std::min(hand.tree.upper[f.j1], finger == kThumb ? kMaxThumbBend : kMaxBend);
     trial[f.j1] = hand.tree.lower[f.j1] + (bend - hand.tree.lower[f.j1]) * b / (kBends - 1);
     trial[f.j0] = low;
     if (nearest(touch_at(trial)) < kTouch) continue;
-    double open = low, closed = low;
-    bool touched = false;
-    while (!touched && open < high) {
-      closed = std::min(high, open + kCoarse);
-      trial[f.j0] = closed;
-      touched = nearest(touch_at(trial)) < kTouch;
-      if (!touched) open = closed;
-    }
-    for (int i = 0; touched && i < 12; ++i) {
-      trial[f.j0] = 0.5 * (open + closed);
-      (nearest(touch_at(trial)) < kTouch ? closed : open) = trial[f.j0];
-    }
-    trial[f.j0] = open;
+    CloseUntil(
+        low, high, [&](double angle) { trial[f.j0] = angle; },
+        [&] { return nearest(touch_at(trial)); });
     const FingerTouch touch = touch_at(trial);
     double score = std::min(touch.distal, kPassing) / kPassing;
     if (wanted_n_O != nullptr) {
@@ -176,6 +212,11 @@ Candidate TrySeat(const RobotHand& hand, const ContactRequest& request,
     const double gap = std::min(touch.proximal, touch.distal);
     candidate.cost += std::clamp(gap, 0.0, kPassing) / kPassing * (f == kThumb ? 4 : 1);
     if (gap < -0.0005) candidate.cost += 20;  // cannot open far enough
+    // Fingers hold with their last phalanx; on one valve both must lie on, as both are pressed.
+    candidate.cost += kLastPhalanx * std::clamp(touch.distal, 0.0, kPassing) / kPassing;
+    if (OnOneValve(hand, f)) {
+      candidate.cost += std::clamp(touch.proximal, 0.0, kPassing) / kPassing;
+    }
     if (touch.proximal < kNear) add(touch.n_proximal);
     if (touch.distal < kNear) add(touch.n_distal);
   };
@@ -225,7 +266,7 @@ ContactPosture SolvePowerPosture(const RobotHand& hand, const ContactRequest& re
     for (const double palm : {0.0, 0.2}) {
       if (palm != 0 && hand.palm < 0) continue;
       Eigen::VectorXd q_open = hand.open;
-      if (hand.palm >= 0) q_open[hand.palm] = palm;
+      if (hand.palm >= 0) q_open[hand.palm] = hand.tree.lower[hand.palm] + palm;
       ForwardKinematics(hand.tree, q_open, X_HB);
       for (int step = -2; step <= 10; ++step) {
         Pose X_HO = Pose::Identity();

@@ -4,17 +4,17 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "base/error.h"
+#include "kinematics/carry_path.h"
 #include "kinematics/reach_path.h"
-#include "motion/minimum_jerk.h"
 
 namespace springgrasp {
 namespace {
 
 constexpr double kEnoughMargin = 0.25;     // of half a joint's range; more is no better
 constexpr double kLeastClearance = 0.002;  // m, a goal nearer to the table is not taken
-constexpr double kBigStep = 0.15;          // rad between samples: a jump
 constexpr double kFar = 0.05;              // m, what is farther off is as good as far
 constexpr double kNearCost = 10;           // per second, of a posture that touches
 
@@ -163,45 +163,25 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
   }
   plan.X_WH = path.X_WH;
   plan.join = path.join * request.dt / request.T;
-  std::vector<Pose> X_lift;
-  const int lift_steps = static_cast<int>(std::lround(options.lift_duration / request.dt));
-  for (int k = 0; k <= lift_steps; ++k) {
-    const double z = options.lift * MinimumJerkPosition(static_cast<double>(k) / lift_steps);
-    X_lift.push_back(Moved(plan.X_WH.back(), Eigen::Vector3d(0, 0, z)));
-  }
-  const ArmPath lift = TrackArmPath(arm, X_lift, path.q.back(), kBigStep);
-  if (!lift.complete) {
-    plan.reason = "lifting: " + lift.reason;
+  CarryRequest carrying;
+  carrying.X_WH = plan.X_WH.back();
+  carrying.q = path.q.back();
+  carrying.dt = request.dt;
+  carrying.lift = options.lift;
+  carrying.lift_duration = options.lift_duration;
+  carrying.shake = options.shake;
+  carrying.shake_frequency = options.shake_frequency;
+  carrying.shake_duration = options.shake_duration;
+  carrying.max_speed = options.max_joint_speed;
+  carrying.obstacles = [&](const SevenJoints& q) { return ObstacleCost(arm, q, request); };
+  CarryPath carry = PlanCarry(arm, carrying);
+  if (!carry.complete) {
+    plan.reason = carry.reason;
     return false;
   }
-  const int shake_steps = static_cast<int>(std::lround(options.shake_duration / request.dt));
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<Pose> X_shake;
-    for (int k = 0; k <= shake_steps; ++k) {
-      const double t = request.dt * k;
-      // Fades in and out within a quarter period, so that it starts and ends at rest.
-      const double fade = 4 * options.shake_frequency;
-      const double envelope =
-          MinimumJerkPosition(fade * t) * MinimumJerkPosition(fade * (options.shake_duration - t));
-      const double s =
-          options.shake * envelope * std::sin(2 * std::numbers::pi * options.shake_frequency * t);
-      X_shake.push_back(Moved(X_lift.back(), s * Eigen::Vector3d::Unit(axis)));
-    }
-    // Every pose from the same posture, so that the arm comes back to it.
-    ArmIkOptions ik;
-    ik.limit_weight = 0;
-    plan.shake[axis].clear();
-    for (const Pose& X : X_shake) {
-      const auto q = SolveArmIk(arm, X, lift.q.back(), ik);
-      if (!q) {
-        plan.reason = "the lifted arm cannot be shaken as far as asked";
-        return false;
-      }
-      plan.shake[axis].push_back(*q);
-    }
-  }
   plan.arm = path.q;
-  plan.lift = lift.q;
+  plan.lift = std::move(carry.lift);
+  plan.shake = std::move(carry.shake);
   plan.limit_margin = 1;
   plan.table_clearance = std::numeric_limits<double>::infinity();
   plan.self_clearance = kFar;

@@ -71,12 +71,20 @@ int AppendBody(const mjModel& model, int body, int parent, KinematicTree& tree,
     parent = static_cast<int>(tree.nodes.size()) - 1;
     X_PB = Pose(Eigen::Translation3d(-anchor));
   }
-  if (joints > 0 && X_PB.translation().isZero()) return parent;
+  const auto weigh = [&](KinematicTree::Node& node) {
+    node.mass = model.body_mass[body];
+    node.p_BC = Vector3From(model.body_ipos + 3 * body);
+  };
+  if (joints > 0 && X_PB.translation().isZero()) {
+    weigh(tree.nodes.back());
+    return parent;
+  }
   KinematicTree::Node fixed;
   if (joints > 0) tree.nodes.back().name += "_node";
   fixed.name = name;
   fixed.parent = parent;
   fixed.X_PB = X_PB;
+  weigh(fixed);
   tree.nodes.push_back(fixed);
   return static_cast<int>(tree.nodes.size()) - 1;
 }

@@ -73,7 +73,7 @@ TEST(ContactSenseTest, PadForceAlongAnAxisIsTheForceWhoseTorquesTheJointsFeel) {
   valves[3] = torque[3];
   valves[4] = torque[4];
   const PerFinger<double> force =
-      PadForcesAlong(DocumentedHand(), tree, {0, 1, 2, 3, 4}, q, valves, axis);
+      PadForcesAlong(DocumentedHand(), tree, {0, 1, 2, 3, 4}, X, valves, axis);
   EXPECT_NEAR(force[kIndex], 2.5, 1e-9);
   EXPECT_EQ(force[kMiddle], 0);
 }

@@ -56,7 +56,7 @@ TEST(GripControllerTest, WhatIsFeltOfTheForceBecomesWhatIsAskedFor) {
   GripController controller(grip.model, grip.hand, {0, 1, 2, 3, 4}, grip.task);
   grip.Run(controller, GripStage::kFree, 0.5);
   grip.Run(controller, GripStage::kPressing, 4);
-  const PerFinger<double> felt = controller.SensedForce(grip.state);
+  const PerFinger<double> felt = controller.SensedForce();
   EXPECT_NEAR((felt[kThumb] + felt[kIndex]) / 2, 3, 0.05);
 }
 
@@ -71,7 +71,8 @@ TEST(GripControllerTest, FingersThatComeCloserThanTheyHeldRegripHarderUpToTheLim
   for (int slip = 1; slip <= 4; ++slip) {
     // The way in which the pads come closer, two millimetres of it.
     const HandVector toward =
-        ClosingDirections(grip.hand, {0, 1, 2, 3, 4}, grip.state.hand_q, grip.task.involved);
+        ClosingDirections(grip.hand, {0, 1, 2, 3, 4}, BodiesAt(grip.hand, grip.state.hand_q),
+                          grip.task.involved);
     grip.state.hand_q += 0.02 * toward;
     grip.Run(controller, GripStage::kPressing, 0.3);
     EXPECT_EQ(controller.regrips(), slip);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/fingers.h"
 #include "kinematics/hand_layout.h"
@@ -38,6 +39,12 @@ inline KinematicTree ToyHand() {
   tree.lower = Eigen::VectorXd::Constant(11, -1);
   tree.upper = Eigen::VectorXd::Constant(11, 1);
   return tree;
+}
+
+inline std::vector<Pose> BodiesAt(const KinematicTree& tree, const Eigen::VectorXd& q) {
+  std::vector<Pose> X_RB;
+  ForwardKinematics(tree, q, X_RB);
+  return X_RB;
 }
 
 }  // namespace springgrasp
