@@ -53,6 +53,18 @@ GripTorque FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& 
   return result;
 }
 
+GripTorque KeyGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
+                         const HandVector& q, const Eigen::Vector3d& push_H, double force) {
+  std::vector<Pose> X_HB;
+  ForwardKinematics(hand, q, X_HB);
+  Eigen::MatrixXd J(6, hand.num_joints());
+  FrameJacobian(hand, X_HB, tip_frames[kThumb], J);
+  GripTorque result;
+  result.torque = J.topRows<3>().transpose() * (force * push_H);
+  result.force[kThumb] = force;
+  return result;
+}
+
 Eigen::MatrixXd ClosingDirections(const KinematicTree& hand, const PerFinger<int>& tip_frames,
                                   const HandVector& q, const PerFinger<bool>& involved) {
   const Pads pads = PadsAt(hand, tip_frames, q, involved);

@@ -32,8 +32,13 @@ struct FingertipGrip {
 GripTorque FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
                                const HandVector& q, const FingertipGrip& grip);
 
-// Directions in joint space in which such a grip closes: one for each finger opposed to the thumb,
-// orthonormal columns.
+// A key grip: the thumb alone presses with `force` (N) along `push_H` (unit) on what lies on the
+// side of another finger, whose joints have no torque against it.
+GripTorque KeyGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
+                         const HandVector& q, const Eigen::Vector3d& push_H, double force);
+
+// Directions in joint space in which a fingertip grip closes: one for each finger opposed to the
+// thumb, orthonormal columns.
 Eigen::MatrixXd ClosingDirections(const KinematicTree& hand, const PerFinger<int>& tip_frames,
                                   const HandVector& q, const PerFinger<bool>& involved);
 

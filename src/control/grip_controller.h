@@ -4,6 +4,8 @@
 // slips. At the fingertips the force is held by what is sensed of it.
 #pragma once
 
+#include <optional>
+
 #include "control/contact_sense.h"
 #include "control/grip.h"
 #include "control/pneumatic_hand.h"
@@ -41,6 +43,9 @@ struct GripSettings {
 struct GripTask {
   bool enclosing = false;
   PerFinger<bool> involved = {};
+  // Lateral: where the thumb pushes in H, unit. The other involved fingers keep their planned
+  // posture; their sides withstand it.
+  std::optional<Eigen::Vector3d> push_H;
   double force = 3;      // N, of the thumb
   double max_force = 5;  // N, of any finger
 };
@@ -67,6 +72,10 @@ class GripController {
   PerFinger<double> SensedForce(const RobotState& state) const;
 
  private:
+  // Whether a finger closes and presses.
+  bool Presses(int finger) const {
+    return task_.involved[finger] && (!task_.push_H || finger == kThumb);
+  }
   void Press(const RobotState& state, double dt, HandTarget& target);
   void WatchSlip(const RobotState& state, double dt);
   double Aperture(const HandVector& q) const;

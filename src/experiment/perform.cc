@@ -38,15 +38,19 @@ PneumaticHandModel BelievedHand(const HandLayout& layout, const PerformOptions& 
   return WithErrors(model, options.pneumatics.model_error, engine);
 }
 
-GripTask Task(const GraspPlan& plan, const PerformOptions& options) {
+GripTask Task(const GraspPlan& plan, const RobotHand& hand, const PerformOptions& options) {
   const GripOptions& grip = options.grip;
   GripTask task;
   task.enclosing = plan.type == "power";
   task.involved = plan.involved;
+  // The index withstands along its joints' axes.
+  if (plan.type == "lateral") task.push_H = -hand.R_HA.col(1);
   // The thumb of an enclosing hand bears what all others press, and the load.
   task.max_force = (task.enclosing ? kEnclosingShare : 1) * options.max_finger_force;
   task.force = std::max(
-      task.enclosing ? grip.min_enclosing_force : grip.min_force,
+      task.enclosing ? grip.min_enclosing_force
+      : task.push_H  ? grip.min_key_force
+                     : grip.min_force,
       GripForceFor(plan.mass, plan.friction, grip.acceleration, grip.safety, task.max_force));
   return task;
 }
@@ -71,7 +75,7 @@ class Performer {
         nominal_hand_(robot.layout()),
         drives_(options.pneumatics, simulation.timestep(), options.actuation),
         grip_(BelievedHand(robot.layout(), options), body.hand.tree, tip_frames_,
-              Task(plan, options), options.grip.settings),
+              Task(plan, body.hand, options), options.grip.settings),
         watch_(simulation, robot, object_, criteria_, performance_) {
     arm_frame_ = arm_.FrameIndex("hand_r_H");
   }

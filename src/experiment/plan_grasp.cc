@@ -26,6 +26,7 @@ constexpr double kWay = 0.72;                // of T, then the object enters the
 constexpr double kBlocked = -0.01;         // m, less than this on the way and another pose is tried
 constexpr double kWaitClearance = 0.015;   // m, between object and waiting fingers
 constexpr double kMaxEarlyFlexion = 0.25;  // rad
+constexpr double kInset = 0.015;           // m, of a plate, between its edge and the contacts
 constexpr double kFastest = 1.5;           // s, reach of the robot's arm
 
 // Smallest distance of the open hand from the object over the first `samples` of the way, m.
@@ -112,6 +113,11 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
   generate.tip_radius = body.hand.tip_radius;
   generate.dt = dt;
   generate.object_centre = request.object_centre;
+  generate.inset = kInset;
+  // Of a lateral grasp the index lies where the plate comes to; the thumb closes on it.
+  const auto closing = [&](const PerFinger<bool>& involved) {
+    return grasp.type == "lateral" ? PerFinger<bool>{true} : involved;
+  };
   const Pose X_WH_start = HandPose(body.arm, request.arm_start);
   // The hand that demonstrated.
   const HumanHand human = ScaledHand(body.human, grasp.hand_length / kMmmHandLength);
@@ -130,7 +136,7 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     result.posture = SolveContactPosture(body.hand, contacts);
     const Pose X_GH = result.posture.X_HG.inverse();
     const Eigen::VectorXd q_open =
-        OpenedPosture(body.hand, result.posture, generate.shape, motion.involved, 1.0);
+        OpenedPosture(body.hand, result.posture, generate.shape, closing(motion.involved), 1.0);
 
     // The reach of G from where the robot's hand is, for an object turned by what it leaves free.
     const auto path = [&](const Pose& X_OF) {
@@ -142,6 +148,9 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
       std::vector<Pose> X_OH;
       for (const FingertipMotionSample& sample : motion.samples) {
         X_OH.push_back(turned.X_WO.inverse() * sample.X_WG * X_GH);
+      }
+      if (grasp.type == "lateral") {
+        X_OH = EdgeOnApproach(X_OH, result.posture.X_HG, motion.n_OC[kThumb], dt, motion.T);
       }
       X_OH =
           ClearApproach(body.hand, generate.shape, X_OH, q_open, dt, motion.T, kApproachClearance);
@@ -217,9 +226,9 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     const Eigen::VectorXd q_wait = grasp.type == "power"
                                        ? q_open
                                        : OpenedPosture(body.hand, result.posture, generate.shape,
-                                                       motion.involved, kWaitClearance);
-    const std::vector<Eigen::VectorXd> q_hand =
-        CloseAfterArrival(body.hand, hand, motion.involved, q_wait, result.posture.q, dt, motion.T);
+                                                       closing(motion.involved), kWaitClearance);
+    const std::vector<Eigen::VectorXd> q_hand = CloseAfterArrival(
+        body.hand, hand, closing(motion.involved), q_wait, result.posture.q, dt, motion.T);
     plan.hand = Fixed<HandVector>(q_hand);
     plan.lift = Fixed<ArmVector>(planned.lift);
     for (int axis = 0; axis < 3; ++axis) plan.shake[axis] = Fixed<ArmVector>(planned.shake[axis]);
