@@ -51,6 +51,17 @@ GripTorque FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& 
   return result;
 }
 
+GripTorque KeyGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
+                         const std::vector<Pose>& X_HB, const Eigen::Vector3d& push_H,
+                         double force) {
+  HandJacobian J(6, hand.num_joints());
+  FrameJacobian(hand, X_HB, tip_frames[kThumb], J);
+  GripTorque result;
+  result.torque.noalias() = J.topRows<3>().transpose() * (force * push_H);
+  result.force[kThumb] = force;
+  return result;
+}
+
 HandDirections ClosingDirections(const KinematicTree& hand, const PerFinger<int>& tip_frames,
                                  const std::vector<Pose>& X_HB, const PerFinger<bool>& involved) {
   const Pads pads = PadsAt(hand, tip_frames, X_HB, involved);

@@ -38,8 +38,14 @@ struct FingertipGrip {
 GripTorque FingertipGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
                                const std::vector<Pose>& X_HB, const FingertipGrip& grip);
 
-// Directions in joint space in which such a grip closes: one for each finger opposed to the thumb,
-// orthonormal columns.
+// A key grip: the thumb alone presses with `force` (N) along `push_H` (unit) on what lies on the
+// side of another finger, whose joints have no torque against it.
+GripTorque KeyGripTorque(const KinematicTree& hand, const PerFinger<int>& tip_frames,
+                         const std::vector<Pose>& X_HB, const Eigen::Vector3d& push_H,
+                         double force);
+
+// Directions in joint space in which a fingertip grip closes: one for each finger opposed to the
+// thumb, orthonormal columns.
 HandDirections ClosingDirections(const KinematicTree& hand, const PerFinger<int>& tip_frames,
                                  const std::vector<Pose>& X_HB, const PerFinger<bool>& involved);
 

@@ -28,14 +28,14 @@ ValveVector GripController::Control(const RobotState& state, const HandTarget& r
   if (touched_.size() == 0) touched_ = state.hand_q;
   if (stage == GripStage::kPressing && !pressing_) {
     bool all = true;
-    for (int f = 0; f < kNumFingers; ++f) all = all && (!task_.involved[f] || sense_.touching[f]);
+    for (int f = 0; f < kNumFingers; ++f) all = all && (!Presses(f) || sense_.touching[f]);
     waited_ += dt;
     if (all || waited_ > settings_.patience) {
       pressing_ = true;
       reference_ = state.hand_q;
       // What wound up on the way is not wanted.
       for (int f = 0; f < kNumFingers; ++f) {
-        if (!task_.involved[f]) continue;
+        if (!Presses(f)) continue;
         for (const int j : {1 + 2 * f, 2 + 2 * f}) {
           memory_.integral[model_.layout.valve_of_joint[j]] = 0;
         }
@@ -49,7 +49,7 @@ ValveVector GripController::Control(const RobotState& state, const HandTarget& r
     Press(state, dt, target);
   } else {
     for (int f = 0; f < kNumFingers; ++f) {
-      if (!task_.involved[f]) continue;
+      if (!Presses(f)) continue;
       for (const int j : {1 + 2 * f, 2 + 2 * f}) {
         if (sense_.touching[f]) {
           if (!touched[f]) touched_[j] = state.hand_q[j];
@@ -97,33 +97,37 @@ void GripController::Press(const RobotState& state, double dt, HandTarget& targe
     const PerFinger<double> sensed = SensedForce();
     double both = 0;
     for (const double n : sensed) both += n / 2;
+    if (task_.push_H) both = sensed[kThumb];
     const double limit = settings_.max_correction * force;
     correction_ =
         std::clamp(correction_ + settings_.force_integral * (force - both) * dt, -limit, limit);
     int opposed = 0;
     for (int f = kIndex; f < kNumFingers; ++f) opposed += task_.involved[f];
     const double even = (2 * both - sensed[kThumb]) / std::max(1, opposed);
-    for (int f = kIndex; f < kNumFingers && held_; ++f) {
+    for (int f = kIndex; f < kNumFingers && held_ && !task_.push_H; ++f) {
       if (!task_.involved[f]) continue;
       share_[f] = std::clamp(
           share_[f] + settings_.force_integral * (even - sensed[f]) / force * opposed * dt,
           1 - settings_.max_correction, 1 + settings_.max_correction);
     }
-    grip = FingertipGripTorque(hand_, tip_frames_, X_HB_,
-                               {task_.involved, force + correction_, share_});
+    grip = task_.push_H
+               ? KeyGripTorque(hand_, tip_frames_, X_HB_, *task_.push_H, force + correction_)
+               : FingertipGripTorque(hand_, tip_frames_, X_HB_,
+                                     {task_.involved, force + correction_, share_});
     for (double& n : grip.force) n *= force / (force + correction_);
     // Along these the force decides, the posture in all others.
     const HandDirections closing = ClosingDirections(hand_, tip_frames_, X_HB_, task_.involved);
     for (int k = 0; k < closing.cols(); ++k) {
       posture -= closing.col(k).dot(posture) * closing.col(k);
     }
+    if (task_.push_H) posture.setZero();
   }
   target_force_ = grip.force;
   target.torque = grip.torque;
   target.offset = sense_.offset;  // what the model errs by, known from the free hand
   target.integrate = held_;
   for (int f = 0; f < kNumFingers; ++f) {
-    if (!task_.involved[f]) continue;
+    if (!Presses(f)) continue;
     for (const int j : {1 + 2 * f, 2 + 2 * f}) {
       target.pressing[model_.layout.valve_of_joint[j]] = true;
       // Enclosing fingers yield to the object's shape: no stiffness about any posture.
@@ -181,10 +185,11 @@ PerFinger<double> GripController::SensedForce() const {
     ++count;
   }
   const Eigen::Vector3d p_thumb = FramePose(hand_, X_HB_, tip_frames_[kThumb]).translation();
-  const Eigen::Vector3d axis = (others / std::max(1, count) - p_thumb).normalized();
+  Eigen::Vector3d axis = (others / std::max(1, count) - p_thumb).normalized();
+  if (task_.push_H) axis = *task_.push_H;
   sensed = PadForcesAlong(model_.layout, hand_, tip_frames_, X_HB_, sense_.torque, axis);
   for (int f = 0; f < kNumFingers; ++f) {
-    if (!task_.involved[f]) sensed[f] = 0;
+    if (!Presses(f)) sensed[f] = 0;
     if (f != kThumb) sensed[f] = -sensed[f];
   }
   return sensed;

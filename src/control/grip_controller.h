@@ -5,6 +5,7 @@
 // what is sensed of it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "control/contact_sense.h"
@@ -38,14 +39,17 @@ struct GripSettings {
   double max_correction = 0.4;      // of the force
   double regrip_distance = 0.0015;  // m, that thumb and fingers come closer when the object slips
   double enclosing_regrip_distance = 0.003;  // m, that the fingers' pads come nearer to their bases
-  double settling = 0.3;            // s, within that time
-  double regrip_factor = 1.3;       // on the force
-  double regrip_pause = 0.15;       // s
+  double settling = 0.3;                     // s, within that time
+  double regrip_factor = 1.3;                // on the force
+  double regrip_pause = 0.15;                // s
 };
 
 struct GripTask {
   bool enclosing = false;
   PerFinger<bool> involved = {};
+  // Lateral: where the thumb pushes in H, unit. The other involved fingers keep their planned
+  // posture; their sides withstand it.
+  std::optional<Eigen::Vector3d> push_H;
   double force = 3;      // N, of the thumb
   double max_force = 5;  // N, of any finger
 };
@@ -59,8 +63,9 @@ class GripController {
                  const PerFinger<int>& tip_frames, const GripTask& task,
                  const GripSettings& settings = {});
 
-  // Valve commands (bar). Allocates in its first call only. `reference`: what the plan wants of the joints now. Stage kFree: nothing
-  // is near; kClosing: fingers stop where they touch; kPressing: they grip.
+  // Valve commands (bar). Allocates in its first call only. `reference`: what the plan wants of the
+  // joints now. Stage kFree: nothing is near; kClosing: fingers stop where they touch; kPressing:
+  // they grip.
   ValveVector Control(const RobotState& state, const HandTarget& reference, GripStage stage,
                       double dt);
 
@@ -72,6 +77,10 @@ class GripController {
   PerFinger<double> SensedForce() const;
 
  private:
+  // Whether a finger closes and presses.
+  bool Presses(int finger) const {
+    return task_.involved[finger] && (!task_.push_H || finger == kThumb);
+  }
   void Press(const RobotState& state, double dt, HandTarget& target);
   void WatchSlip(const RobotState& state, double dt);
   void CloseOn(const HandTarget& plan, bool all, double dt);
@@ -83,13 +92,13 @@ class GripController {
   const GripTask task_;
   const GripSettings settings_;
   PerFinger<int> knuckles_ = {};  // bodies that the proximal joints turn
-  std::vector<Pose> X_HB_;         // at the posture of the last call
+  std::vector<Pose> X_HB_;        // at the posture of the last call
   HandControlState memory_;
   ContactSense sense_;
-  HandVector touched_;               // rad, where each touching finger stopped
-  HandVector reference_;             // rad, posture that is held
-  double waited_ = 0, pressed_ = 0;  // s
-  PerFinger<double> closing_ = {};   // rad beyond the plan
+  HandVector touched_;                    // rad, where each touching finger stopped
+  HandVector reference_;                  // rad, posture that is held
+  double waited_ = 0, pressed_ = 0;       // s
+  PerFinger<double> closing_ = {};        // rad beyond the plan
   PerFinger<bool> planned_closing_ = {};  // moved by the plan since the hand is there
   bool pressing_ = false, held_ = false;
   double correction_ = 0;  // N

@@ -38,15 +38,19 @@ PneumaticHandModel BelievedHand(const HandLayout& layout, const PerformOptions& 
   return WithErrors(model, options.pneumatics.model_error, engine);
 }
 
-GripTask Task(const GraspPlan& plan, const PerformOptions& options) {
+GripTask Task(const GraspPlan& plan, const RobotHand& hand, const PerformOptions& options) {
   const GripOptions& grip = options.grip;
   GripTask task;
   task.enclosing = plan.type == "power";
   task.involved = plan.involved;
+  // The index withstands along its joints' axes.
+  if (plan.type == "lateral") task.push_H = -hand.R_HA.col(1);
   // The thumb of an enclosing hand bears what all others press, and the load.
   task.max_force = (task.enclosing ? kEnclosingShare : 1) * options.max_finger_force;
   task.force = std::max(
-      task.enclosing ? grip.min_enclosing_force : grip.min_force,
+      task.enclosing ? grip.min_enclosing_force
+      : task.push_H  ? grip.min_key_force
+                     : grip.min_force,
       GripForceFor(plan.mass, plan.friction, grip.acceleration, grip.safety, task.max_force));
   return task;
 }
@@ -62,7 +66,7 @@ class Performer {
         object_name_(object),
         object_(IdOf(simulation.model(), mjOBJ_BODY, object)),
         mirrored_(body.mirrored),
-        arm_(body.arm.tree),
+        arm_(body.arm),
         plan_(plan),
         options_(options),
         criteria_(options.criteria),
@@ -71,10 +75,8 @@ class Performer {
         nominal_hand_(robot.layout()),
         drives_(options.pneumatics, simulation.timestep(), options.actuation),
         grip_(BelievedHand(robot.layout(), options), body.hand.tree, tip_frames_,
-              Task(plan, options), options.grip.settings),
-        watch_(simulation, robot, object_, criteria_, performance_) {
-    arm_frame_ = arm_.FrameIndex("hand_r_H");
-  }
+              Task(plan, body.hand, options), options.grip.settings),
+        watch_(simulation, robot, object_, criteria_, performance_) {}
 
   Performance Run() {
     Settle() && Reach() && Grip() && Lift() && Hold() && Disturb() && After();
@@ -86,14 +88,19 @@ class Performer {
  private:
   // Torques that carry the believed load: J' (m g) at the object's place in the hand.
   ArmVector LoadTorque(const RobotState& state) const {
+    // The rest of the robot may have joints too, which carry it by themselves.
+    Eigen::VectorXd q = arm_.q;
+    for (int i = 0; i < arm_.num_joints(); ++i) q[arm_.joints[i]] = state.arm_q[i];
     std::vector<Pose> X_WB;
-    ForwardKinematics(arm_, state.arm_q, X_WB);
-    Eigen::MatrixXd J(6, arm_.num_joints());
-    FrameJacobian(arm_, X_WB, arm_frame_, J);
+    ForwardKinematics(arm_.tree, q, X_WB);
+    Eigen::MatrixXd J(6, arm_.tree.num_joints());
+    FrameJacobian(arm_.tree, X_WB, arm_.frame, J);
     const Eigen::Vector3d lever =
-        FramePose(arm_, X_WB, arm_frame_).linear() * plan_.X_HO.translation();
+        FramePose(arm_.tree, X_WB, arm_.frame).linear() * plan_.X_HO.translation();
     const Eigen::Vector3d force(0, 0, plan_.mass * kGravity);
-    return J.topRows<3>().transpose() * force + J.bottomRows<3>().transpose() * lever.cross(force);
+    const Eigen::VectorXd torque =
+        J.topRows<3>().transpose() * force + J.bottomRows<3>().transpose() * lever.cross(force);
+    return torque(arm_.joints);
   }
 
   // One control and simulation step. `load` in [0, 1] scales the carried load. Returns false when
@@ -277,9 +284,7 @@ class Performer {
 
   bool Hold() {
     Enter(Phase::kHold);
-    std::vector<Pose> X_WB;
-    ForwardKinematics(arm_, plan_.lift.back(), X_WB);
-    planned_ = FramePose(arm_, X_WB, arm_frame_);
+    planned_ = HandPose(arm_, plan_.lift.back());
     if (mirrored_) planned_ = MirroredBodyPose(planned_);
     const double quiet = 0.5;  // s, let the lift die out before creep is measured
     Eigen::Vector3d p_HO_quiet = watch_.ObjectInHand().translation();
@@ -363,7 +368,7 @@ class Performer {
   const std::string object_name_;
   const int object_;
   const bool mirrored_;
-  const KinematicTree& arm_;
+  const Arm& arm_;
   const GraspPlan& plan_;
   const PerformOptions& options_;
   const TrialCriteria& criteria_;
@@ -372,7 +377,6 @@ class Performer {
   const PneumaticHandModel nominal_hand_;
   PneumaticDrives drives_;
   GripController grip_;
-  int arm_frame_ = 0;
   ArmControlState arm_memory_;
   Performance performance_;
   TrialWatch watch_;  // writes into performance_, so it stands after it

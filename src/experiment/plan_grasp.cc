@@ -23,9 +23,10 @@ constexpr double kApproachClearance = 0.02;  // m, between object and open hand 
 constexpr double kWay = 0.72;                // of T, then the object enters the hand
 // The hand is not fully open on its way yet, so its open outline may cut the object a little (tuned
 // with experiments/first_grasps, seeds below 1000).
-constexpr double kBlocked = -0.01;         // m, less than this on the way and another pose is tried
-constexpr double kWaitClearance = 0.015;   // m, between object and waiting fingers
-constexpr double kFastest = 1.5;           // s, reach of the robot's arm
+constexpr double kBlocked = -0.01;        // m, less than this on the way and another pose is tried
+constexpr double kWaitClearance = 0.015;  // m, between object and waiting fingers
+constexpr double kInset = 0.015;          // m, of a plate, between its edge and the contacts
+constexpr double kFastest = 1.5;          // s, reach of the robot's arm
 
 // Smallest distance of the open hand from the object over the first `samples` of the way, m.
 double ClearanceOnTheWay(const RobotHand& hand, const Shape& shape, const Pose& X_OW,
@@ -105,6 +106,11 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
   generate.tip_radius = body.hand.tip_radius;
   generate.dt = dt;
   generate.object_centre = request.object_centre;
+  generate.inset = kInset;
+  // Of a lateral grasp the index lies where the plate comes to; the thumb closes on it.
+  const auto closing = [&](const PerFinger<bool>& involved) {
+    return grasp.type == "lateral" ? PerFinger<bool>{true} : involved;
+  };
   const Pose X_WH_start = HandPose(body.arm, request.arm_start);
   // The hand that demonstrated.
   const HumanHand human = ScaledHand(body.human, grasp.hand_length / kMmmHandLength);
@@ -125,7 +131,7 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     const Eigen::VectorXd q_open = HangingPosture(
         DrivesOf(body.hand), body.hand,
         GravityIn(request.object.X_WO * result.posture.X_HO.inverse()),
-        OpenedPosture(body.hand, result.posture, generate.shape, motion.involved, 1.0));
+        OpenedPosture(body.hand, result.posture, generate.shape, closing(motion.involved), 1.0));
 
     // The reach of G from where the robot's hand is, for an object turned by what it leaves free.
     const auto path = [&](const Pose& X_OF) {
@@ -137,6 +143,9 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
       std::vector<Pose> X_OH;
       for (const FingertipMotionSample& sample : motion.samples) {
         X_OH.push_back(turned.X_WO.inverse() * sample.X_WG * X_GH);
+      }
+      if (grasp.type == "lateral") {
+        X_OH = EdgeOnApproach(X_OH, result.posture.X_HG, motion.n_OC[kThumb], dt, motion.T);
       }
       X_OH =
           ClearApproach(body.hand, generate.shape, X_OH, q_open, dt, motion.T, kApproachClearance);
@@ -212,7 +221,7 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     const bool power = grasp.type == "power";
     Eigen::VectorXd q_wait = power ? q_open
                                    : OpenedPosture(body.hand, result.posture, generate.shape,
-                                                   motion.involved, kWaitClearance);
+                                                   closing(motion.involved), kWaitClearance);
     Eigen::VectorXd q_end = result.posture.q;
     if (request.baseline) {
       hand.q = PlanBaselineHand(*request.baseline, body, human, grasp, motion, result.posture);
@@ -224,10 +233,10 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
       q_wait = request.baseline->name == "playback" ? body.hand.tree.upper
                : power                              ? hand.q.front()
                        : LastClear(body.hand, hand.q, result.posture.X_HO.inverse(), generate.shape,
-                                   motion.involved);
+                                   closing(motion.involved));
     }
     std::vector<Eigen::VectorXd> q_hand =
-        CloseAfterArrival(body.hand, hand, motion.involved, q_wait, q_end, dt, motion.T);
+        CloseAfterArrival(body.hand, hand, closing(motion.involved), q_wait, q_end, dt, motion.T);
     LetHang(body.hand, planned.X_WH, q_hand);
     plan.hand = Fixed<HandVector>(q_hand);
     plan.lift = Fixed<ArmVector>(planned.lift);

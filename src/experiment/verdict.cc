@@ -74,10 +74,12 @@ ContactCheck CheckContacts(const std::string& type, const ContactWindow& w, cons
                                  100 * other / w.total_normal);
     }
     if (check.reason.empty() && type == "lateral") {
-      // Radial axis of the index: y of H, which its flexion leaves alone.
-      const double from_radial = AngleDeg(-w.f_H[kIndex], Eigen::Vector3d::UnitY());
+      // Radial axis of the index: y of H, which its flexion leaves alone; there it presses.
+      const double from_radial = AngleDeg(w.f_H[kIndex], Eigen::Vector3d::UnitY());
       if (w.normal[kThumb] - w.proximal_normal[kThumb] < criteria.contact_force) {
         check.reason = "the thumb's last phalanx does not touch";
+      } else if (w.normal[kIndex] - w.proximal_normal[kIndex] < criteria.contact_force) {
+        check.reason = "the index's last phalanx does not touch";
       } else if (from_radial > 45) {
         check.reason =
             fmt::format("index touched {:.0f} degrees from its radial side", from_radial);

@@ -86,8 +86,12 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
   const Pose X_WO = options.X_WO * MakePose(Vector3d::Zero(), turn);
 
   // Contacts on the new surface; G keeps its place among them.
+  const bool plate = options.inset > 0 && grasp.type == "lateral" &&
+                     options.shape.kind == Shape::Kind::kBox &&
+                     grasp.shape.kind == Shape::Kind::kBox;
   const PerFinger<Contact> contacts =
-      ContactsOn(grasp, options.shape, options.tip_radius, options.mesh.get());
+      plate ? PlateContacts(grasp, options.shape, options.tip_radius, options.inset)
+            : ContactsOn(grasp, options.shape, options.tip_radius, options.mesh.get());
   const PerFinger<Contact> learned = ContactsOn(grasp, grasp.shape, grasp.tip_radius);
   Vector3d shift = Vector3d::Zero();
   if (!options.object_centre) {

@@ -31,6 +31,9 @@ struct GenerateOptions {
   // from start to goal: the forcing term of Eq. (12) with its position weights turned and scaled
   // alike. For robots whose start lies elsewhere than the demonstrator's.
   bool similar_reach = false;
+  // Lateral grasps of boxes: contacts on the two large faces, this far from their edges, m
+  // (PlateContacts); 0: along the learned rays.
+  double inset = 0;
   // Further rotation of the whole reach about the object's z, rad (what symmetry leaves free).
   double yaw = 0;
 };

@@ -1,5 +1,8 @@
 #include "grasp/transfer.h"
 
+#include <algorithm>
+
+#include "base/error.h"
 #include "grasp/generate.h"
 
 namespace springgrasp {
@@ -61,6 +64,33 @@ void TakeSprings(const Grasp& from, Grasp& to) {
   to.bend = from.bend;
   to.lag = from.lag;
   to.scales.x0 = from.scales.x0;
+}
+
+PerFinger<Contact> PlateContacts(const Grasp& grasp, const Shape& shape, double tip_radius,
+                                 double inset) {
+  ThrowUnless(shape.kind == Shape::Kind::kBox && grasp.shape.kind == Shape::Kind::kBox,
+              "{}: contacts of a plate on {} instead of a box", grasp.name,
+              FormatShape(shape.kind == Shape::Kind::kBox ? grasp.shape : shape));
+  Eigen::Index thin = 0;
+  shape.size.minCoeff(&thin);
+  const PerFinger<Contact> learned = ContactsOn(grasp, grasp.shape, grasp.tip_radius);
+  double thumb = learned[kThumb].p_OC[thin], others = 0;
+  for (int i = kIndex; i < kNumFingers; ++i) {
+    if (grasp.involved[i]) others = learned[i].p_OC[thin];
+  }
+  const double side = thumb >= others ? 1 : -1;
+  PerFinger<Contact> contacts;
+  for (int i = 0; i < kNumFingers; ++i) {
+    if (!grasp.involved[i]) continue;
+    contacts[i].n_O = (i == kThumb ? side : -side) * Eigen::Vector3d::Unit(thin);
+    contacts[i].p_OC = learned[i].p_OC.cwiseProduct(shape.size.cwiseQuotient(grasp.shape.size));
+    for (int k = 0; k < 3; ++k) {
+      const double room = std::max(0.0, shape.size[k] / 2 - inset);
+      contacts[i].p_OC[k] = std::clamp(contacts[i].p_OC[k], -room, room);
+    }
+    contacts[i].p_OC[thin] = contacts[i].n_O[thin] * (shape.size[thin] / 2 + tip_radius);
+  }
+  return contacts;
 }
 
 }  // namespace springgrasp

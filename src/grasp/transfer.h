@@ -3,6 +3,7 @@
 
 #include "base/shape.h"
 #include "grasp/grasp.h"
+#include "grasp/object_contacts.h"
 
 namespace springgrasp {
 
@@ -17,5 +18,11 @@ Grasp EncloseAlongAxis(const Grasp& grasp, const Shape& shape);
 // belong to them; the springs and all that drives them.
 void TakeContacts(const Grasp& from, Grasp& to);
 void TakeSprings(const Grasp& from, Grasp& to);
+
+// Contacts of a lateral grasp of a box on another: thumb and fingers on the two large faces, where
+// they were as fractions of these, but `inset` (m) from their edges, or in the middle of narrower
+// ones. Rays from O would move along the faces with the thickness. Both shapes must be boxes.
+PerFinger<Contact> PlateContacts(const Grasp& grasp, const Shape& shape, double tip_radius,
+                                 double inset);
 
 }  // namespace springgrasp

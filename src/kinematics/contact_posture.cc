@@ -29,10 +29,35 @@ constexpr double kLikeHuman = 4;         // rad, involved fingers
 constexpr double kOpen = 0.5;            // rad, fingers that should be out of the way
 constexpr double kLever = 0.01;          // m, of a joint that could not press
 constexpr double kMinProximalLever = 0.035, kMinDistalLever = 0.018;  // m
-constexpr double kPad = 0.2;  // contact away from the pad's palmar side
+constexpr double kPad = 0.2;     // contact away from the pad's palmar side
+constexpr double kRadial = 0.1;  // rad, lateral: push of the index off its radial axis
+constexpr double kMaxTurningLever = 0.005, kTurningLever = 0.002;  // m
+constexpr double kFist = 1.4;    // rad, of both joints
+constexpr double kTurned = 1.2;  // rad, lateral: where the search for the thumb's turn begins
 constexpr int kStarts = 5;
 // What presses in a power grasp, m.
 constexpr double kTouching = 0.0025, kPalmTouching = 0.005;
+
+Eigen::Vector3d TipOf(const RobotHand& hand, const std::vector<Pose>& X_HB, int finger) {
+  return FramePose(hand.tree, X_HB, hand.fingers[finger].tip).translation();
+}
+
+// Where the side of a finger meets the thumb: the point on the axis of its last phalanx that is
+// nearest to the thumb's tip across the hand, in H.
+Eigen::Vector3d SideContact(const RobotHand& hand, const std::vector<Pose>& X_HB, int finger) {
+  Eigen::Vector3d a = Eigen::Vector3d::Zero(), b = a;
+  for (const LinkCapsule& c : hand.capsules) {
+    if (c.finger != finger || !c.distal) continue;
+    a = X_HB[c.node] * c.a;
+    b = X_HB[c.node] * c.b;
+  }
+  const Eigen::Vector3d radial = hand.R_HA.col(1);
+  const auto across = [&](const Eigen::Vector3d& v) { return (v - radial * radial.dot(v)).eval(); };
+  const Eigen::Vector3d along = across(b - a);
+  const double length = std::max(1e-9, along.squaredNorm());
+  const double s = across(TipOf(hand, X_HB, kThumb) - a).dot(along) / length;
+  return a + std::clamp(s, 0.0, 1.0) * (b - a);
+}
 
 // Everything that is known about one try: object in the hand and joints.
 class FingertipRows {
@@ -43,13 +68,14 @@ class FingertipRows {
         request_(request),
         options_(options),
         X_HO_seed_(X_HO_seed),
+        lateral_(request.type == "lateral"),
         J_(6, hand.tree.num_joints()) {}
 
   int num_unknowns() const { return 6 + hand_.tree.num_joints(); }
   int num_rows() const {
     int involved = 0;
     for (const bool i : request_.involved) involved += i ? 1 : 0;
-    return 7 * involved + 7 + 2 * kNumFingers + 1 + (hand_.opposition >= 0 ? 2 : 0) +
+    return 7 * involved + 7 + 2 * kNumFingers + 1 + (hand_.opposition >= 0 ? 3 : 0) +
            static_cast<int>(hand_.capsules.size());
   }
 
@@ -65,31 +91,43 @@ class FingertipRows {
     int row = 0;
     Eigen::Vector3d n_others = Eigen::Vector3d::Zero(), p_others = Eigen::Vector3d::Zero();
     Eigen::Vector3d n_thumb = Eigen::Vector3d::UnitX(), p_thumb = Eigen::Vector3d::Zero();
-    double others = 0;
+    double others = 0, turning = 0;
     for (int f = 0; f < kNumFingers; ++f) {
       if (!request_.involved[f]) continue;
       const RobotHand::Finger& finger = hand_.fingers[f];
-      const Pose X_HF = FramePose(hand_.tree, X_HB_, finger.tip);
-      const Eigen::Vector3d p = X_OH * X_HF.translation();
+      const bool side = lateral_ && f != kThumb;
+      const Eigen::Vector3d p_HC = side ? SideContact(hand_, X_HB_, f) : TipOf(hand_, X_HB_, f);
+      const Eigen::Vector3d p = X_OH * p_HC;
       Eigen::Vector3d n;
       const double gap = SignedDistance(request_.shape, p, &n) - hand_.tip_radius;
       const Eigen::Vector3d slide = p - request_.p_OC[f];
       r[row++] = (gap + options_.squeeze) / kTouch;
       r.segment<3>(row) = (slide - n * n.dot(slide)) / kSlide;
       row += 3;
-      // The joints must be able to press: levers of the push -n about both joints.
-      FrameJacobian(hand_.tree, X_HB_, finger.tip, J_);
       const Eigen::Vector3d push_H = X_OH.linear().transpose() * -n;
-      const double lever0 = J_.col(finger.j0).head<3>().dot(push_H);
-      const double lever1 = J_.col(finger.j1).head<3>().dot(push_H);
-      r[row++] = std::max(0.0, kMinProximalLever - lever0) / kLever;
-      r[row++] = std::max(0.0, kMinDistalLever - lever1) / kLever;
-      // ... and do so with the palmar side: where flexion moves the straight link.
-      const int node = hand_.tree.frames[finger.tip].node;
-      const Eigen::Vector3d along = hand_.tree.frames[finger.tip].X_BF.translation().normalized();
-      const Eigen::Vector3d palmar_H =
-          X_HB_[node].linear() * hand_.tree.nodes[node].axis.cross(along).normalized();
-      r[row++] = std::max(0.0, 0.35 - palmar_H.dot(push_H)) / kPad;
+      if (side) {
+        // It only withstands the thumb, along the axes of its joints.
+        r.segment<3>(row) = (push_H - hand_.R_HA.col(1)) / kRadial;
+      } else {
+        // The joints must be able to press: levers of the push -n about both joints.
+        FrameJacobian(hand_.tree, X_HB_, finger.tip, J_);
+        const double lever0 = J_.col(finger.j0).head<3>().dot(push_H);
+        const double lever1 = J_.col(finger.j1).head<3>().dot(push_H);
+        r[row] = std::max(0.0, kMinProximalLever - lever0) / kLever;
+        r[row + 1] = std::max(0.0, kMinDistalLever - lever1) / kLever;
+        // ... and do so with the palmar side: where flexion moves the straight link.
+        const int node = hand_.tree.frames[finger.tip].node;
+        const Eigen::Vector3d along = hand_.tree.frames[finger.tip].X_BF.translation().normalized();
+        const Eigen::Vector3d palmar_H =
+            X_HB_[node].linear() * hand_.tree.nodes[node].axis.cross(along).normalized();
+        r[row + 2] = std::max(0.0, 0.35 - palmar_H.dot(push_H)) / kPad;
+        // The spring that turns the thumb back presses little.
+        if (lateral_ && hand_.opposition >= 0) {
+          const double lever = J_.col(hand_.opposition).head<3>().dot(push_H);
+          turning = std::max(0.0, -lever - kMaxTurningLever) / kTurningLever;
+        }
+      }
+      row += 3;
       if (f == kThumb) {
         n_thumb = n;
         p_thumb = p;
@@ -110,10 +148,12 @@ class FingertipRows {
     const Eigen::Vector3d z = request_.X_OG.linear().col(2);
     r[row++] = std::atan2(line.dot(z.cross(wrist)), z.dot(wrist)) / kWrist;
     for (int f = 0; f < kNumFingers; ++f) {
+      const Eigen::Vector2d& human = request_.human.sigma[f];
       for (int k = 0; k < 2; ++k) {
         const int j = k == 0 ? hand_.fingers[f].j0 : hand_.fingers[f].j1;
-        r[row++] = request_.involved[f] ? (q[j] - request_.human.sigma[f][k]) / kLikeHuman
-                                        : (q[j] - hand_.open[j]) / kOpen;
+        // Fingers beside a lateral grasp are a fist.
+        const double spare = lateral_ ? kFist : hand_.open[j];
+        r[row++] = request_.involved[f] ? (q[j] - human[k]) / kLikeHuman : (q[j] - spare) / kOpen;
       }
     }
     r[row++] = hand_.palm >= 0 ? q[hand_.palm] / kPalmJoint : 0;
@@ -121,6 +161,7 @@ class FingertipRows {
       const RobotHand::Finger& thumb = hand_.fingers[kThumb];
       r[row++] = (q[hand_.opposition] - request_.human.opposition) / kOpposition;
       r[row++] = (q[thumb.j0] - q[thumb.j1]) / kOneValve;
+      r[row++] = turning;
     }
     for (const LinkCapsule& c : hand_.capsules) {
       const Pose X_OB = X_OH * X_HB_[c.node];
@@ -140,6 +181,7 @@ class FingertipRows {
   const ContactRequest& request_;
   const ContactPostureOptions& options_;
   const Pose X_HO_seed_;
+  const bool lateral_;
   std::vector<Pose> X_HB_;
   Eigen::MatrixXd J_;
 };
@@ -183,6 +225,7 @@ std::vector<Start> Starts(const RobotHand& hand, const ContactRequest& request,
         for (const double finger1 : {0.2, 0.6, 1.0}) {
           Start start;
           start.q = hand.open;
+          if (request.type == "lateral" && hand.opposition >= 0) start.q[hand.opposition] = kTurned;
           for (int f = 0; f < kNumFingers; ++f) {
             if (!request.involved[f]) continue;
             start.q[hand.fingers[f].j0] = f == kThumb ? thumb0 : finger0;
@@ -260,9 +303,10 @@ void JudgePosture(const RobotHand& hand, const ContactRequest& request, ContactP
     if (spare) posture.clearance = std::min(posture.clearance, d);
   }
   for (int f = 0; f < kNumFingers; ++f) {
-    const Eigen::Vector3d p = X_OH * FramePose(hand.tree, X_HB, hand.fingers[f].tip).translation();
+    Eigen::Vector3d p = X_OH * TipOf(hand, X_HB, f);
     posture.p_OC[f] = p;
     if (!request.involved[f]) continue;
+    if (request.type == "lateral" && f != kThumb) p = X_OH * SideContact(hand, X_HB, f);
     Eigen::Vector3d n;
     posture.gap[f] = SignedDistance(request.shape, p, &n) - hand.tip_radius;
     if (power) {

@@ -65,6 +65,12 @@ std::vector<Pose> ClearApproach(const RobotHand& robot, const Shape& shape,
                                 const std::vector<Pose>& X_OH, const Eigen::VectorXd& q_open,
                                 double dt, double T, double clearance, double closing = 0.25);
 
+// A hand path that takes a plate edge on: G comes into the plate's plane, a little towards the
+// fingers' side of it, and the hand turns as it will hold it, within the first part of T; the rest
+// is along the plane. `n_O`: the plate's normal on the thumb's side; `X_HG`: G in H.
+std::vector<Pose> EdgeOnApproach(const std::vector<Pose>& X_OH, const Pose& X_HG,
+                                 const Eigen::Vector3d& n_O, double dt, double T);
+
 // The contact posture with the involved fingers opened until they are `clearance` off the object
 // (or as far as they open): what the hand looks like before it closes.
 Eigen::VectorXd OpenedPosture(const RobotHand& robot, const ContactPosture& posture,

@@ -94,9 +94,19 @@ TEST(VerdictTest, LateralAsksForTheRadialSideOfTheIndex) {
   const Shape card{Shape::Kind::kBox, Eigen::Vector3d(0.05, 0.005, 0.08)};
   ContactWindow radial;
   radial.duration = 0.5;
-  Touch(radial, kThumb, {0, 2, 0}, {0, -0.0025, 0});
-  Touch(radial, kIndex, {0, -2, 0}, {0, 0.0025, 0});
+  Touch(radial, kThumb, {0, -2, 0}, {0, 0.0025, 0});
+  Touch(radial, kIndex, {0, 2, 0}, {0, -0.0025, 0});
   EXPECT_TRUE(CheckContacts("lateral", radial, card, {}).ok);
+  ContactWindow ulnar;  // y of H points to the thumb's side
+  ulnar.duration = 0.5;
+  Touch(ulnar, kThumb, {0, 2, 0}, {0, -0.0025, 0});
+  Touch(ulnar, kIndex, {0, -2, 0}, {0, 0.0025, 0});
+  EXPECT_FALSE(CheckContacts("lateral", ulnar, card, {}).ok);
+  ContactWindow proximal;
+  proximal.duration = 0.5;
+  Touch(proximal, kThumb, {0, -2, 0}, {0, 0.0025, 0});
+  Touch(proximal, kIndex, {0, 2, 0}, {0, -0.0025, 0}, 0);
+  EXPECT_FALSE(CheckContacts("lateral", proximal, card, {}).ok);
   ContactWindow back;
   back.duration = 0.5;
   Touch(back, kThumb, {0, 0, 2}, {0, 0, -0.04});
