@@ -26,6 +26,12 @@ ValveVector GripController::Control(const RobotState& state, const HandTarget& r
   if (target.qd.size() == 0) target.qd = HandVector::Zero(target.q.size());
   if (target.qdd.size() == 0) target.qdd = HandVector::Zero(target.q.size());
   if (touched_.size() == 0) touched_ = state.hand_q;
+  if (stage == GripStage::kReleasing) eased_ += dt;
+  if (stage == GripStage::kReleasing && eased_ > settings_.ease) {
+    pressing_ = held_ = false;
+    target_force_ = {};
+    return ControlHand(model_, settings_.moving, target, state, dt, memory_);
+  }
   if (stage == GripStage::kPressing && !pressing_) {
     bool all = true;
     for (int f = 0; f < kNumFingers; ++f) all = all && (!Presses(f) || sense_.touching[f]);
@@ -81,13 +87,14 @@ void GripController::CloseOn(const HandTarget& plan, bool all, double dt) {
 void GripController::Press(const RobotState& state, double dt, HandTarget& target) {
   pressed_ += dt;
   const double ramp = std::min(1.0, pressed_ / settings_.ramp);
-  const double force = ramp * std::min(task_.max_force, force_scale_ * task_.force);
+  const double ease = std::max(0.01, 1 - eased_ / settings_.ease);
+  const double force = ease * ramp * std::min(task_.max_force, force_scale_ * task_.force);
   if (!held_ && pressed_ > settings_.ramp + settings_.settle) {
     held_ = true;
     reference_ = state.hand_q;
     aperture_ = Aperture();
   }
-  if (held_) WatchSlip(state, dt);
+  if (held_ && eased_ == 0) WatchSlip(state, dt);
 
   HandVector posture = reference_ - state.hand_q;
   GripTorque grip;

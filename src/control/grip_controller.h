@@ -33,6 +33,7 @@ struct GripSettings {
   double closing_rate = 0.6;        // rad/s, of a finger that did not touch where it was planned to
   double max_closing = 0.25;        // rad beyond the plan
   double patience = 0.5;            // s, for all fingers to touch; then they press anyhow
+  double ease = 0.4;                // s, from the full force to none
   double ramp = 0.5;                // s, to the full force
   double settle = 0.4;              // s after that until the posture is held
   double force_integral = 3;        // 1/s, of the sensed force's error
@@ -54,7 +55,7 @@ struct GripTask {
   double max_force = 5;  // N, of any finger
 };
 
-enum class GripStage { kFree, kClosing, kPressing };
+enum class GripStage { kFree, kClosing, kPressing, kReleasing };
 
 class GripController {
  public:
@@ -65,10 +66,12 @@ class GripController {
 
   // Valve commands (bar). Allocates in its first call only. `reference`: what the plan wants of the
   // joints now. Stage kFree: nothing is near; kClosing: fingers stop where they touch; kPressing:
-  // they grip.
+  // they grip; kReleasing: their force goes to zero, then they follow the
+  // reference whatever they touch.
   ValveVector Control(const RobotState& state, const HandTarget& reference, GripStage stage,
                       double dt);
 
+  bool pressing() const { return pressing_; }
   bool held() const { return held_; }
   int regrips() const { return regrips_; }
   const PerFinger<bool>& touching() const { return sense_.touching; }
@@ -95,11 +98,11 @@ class GripController {
   std::vector<Pose> X_HB_;        // at the posture of the last call
   HandControlState memory_;
   ContactSense sense_;
-  HandVector touched_;                    // rad, where each touching finger stopped
-  HandVector reference_;                  // rad, posture that is held
-  double waited_ = 0, pressed_ = 0;       // s
-  PerFinger<double> closing_ = {};        // rad beyond the plan
-  PerFinger<bool> planned_closing_ = {};  // moved by the plan since the hand is there
+  HandVector touched_;                           // rad, where each touching finger stopped
+  HandVector reference_;                         // rad, posture that is held
+  double waited_ = 0, pressed_ = 0, eased_ = 0;  // s
+  PerFinger<double> closing_ = {};               // rad beyond the plan
+  PerFinger<bool> planned_closing_ = {};         // moved by the plan since the hand is there
   bool pressing_ = false, held_ = false;
   double correction_ = 0;  // N
   PerFinger<double> share_ = {1, 1, 1, 1, 1};

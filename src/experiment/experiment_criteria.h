@@ -21,6 +21,10 @@ inline const CriterionField kCriterionFields[] = {
     {"shake_duration", &TrialCriteria::shake_duration, {0.1, 60}},
     {"after", &TrialCriteria::after, {0.1, 60}},
     {"window", &TrialCriteria::window, {0.01, 60}},
+    {"place", &TrialCriteria::place, {0.2, 60}},
+    {"release", &TrialCriteria::release, {0.1, 60}},
+    {"retreat", &TrialCriteria::retreat, {0.2, 60}},
+    {"rest", &TrialCriteria::rest, {0.05, 60}},
     {"lift_height", &TrialCriteria::lift_height, {0.01, 0.5}},
     {"force_per_mass", &TrialCriteria::force_per_mass, {0, 100}},
     {"shake_amplitude", &TrialCriteria::shake_amplitude, {0, 0.1}},
@@ -35,6 +39,9 @@ inline const CriterionField kCriterionFields[] = {
     {"max_early_tilt_deg", &TrialCriteria::max_early_tilt_deg, {0, 180}},
     {"max_slip", &TrialCriteria::max_slip, {0, 1}},
     {"max_slip_deg", &TrialCriteria::max_slip_deg, {0, 180}},
+    {"max_place_distance", &TrialCriteria::max_place_distance, {0, 1}},
+    {"max_place_tilt_deg", &TrialCriteria::max_place_tilt_deg, {0, 180}},
+    {"max_place_speed", &TrialCriteria::max_place_speed, {0, 1}},
     {"palm_like_size", &TrialCriteria::palm_like_size, {0, 1}},
 };
 static_assert(sizeof(kCriterionFields) / sizeof(CriterionField) * sizeof(double) ==

@@ -24,7 +24,13 @@ struct GraspPlan {
   std::vector<PerFinger<Eigen::Vector3d>> p_WF;  // planned fingertips, m
   std::vector<ArmVector> lift;                   // rad, from the end of the reach straight up
   std::array<std::vector<ArmVector>, 3> shake;   // rad, about the lifted pose, along W's axes
-  Pose X_HO = Pose::Identity();                  // object in the robot's hand at contact
+  // Where the object shall be set down; both paths empty: nowhere.
+  Pose X_WO_place = Pose::Identity();
+  std::vector<Pose> X_WH_place;    // hand from the lifted pose to there
+  std::vector<ArmVector> place;    // rad, same samples
+  std::vector<ArmVector> retreat;  // rad, from there out of the object's way
+  HandVector released;             // rad, the hand that lets go
+  Pose X_HO = Pose::Identity();    // object in the robot's hand at contact
 };
 
 }  // namespace springgrasp

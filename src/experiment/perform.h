@@ -69,14 +69,16 @@ struct PoseError {
 struct Performance {
   std::vector<TrialEvent> events;  // what went wrong, unordered
   Phase reached = Phase::kSettle;
-  ContactWindow grip, hold, after;  // end of grip, last of hold, after the disturbances
-  double slip = 0, rotation = 0;    // m, rad: largest in the hand from grip to the end
-  double creep = 0;                 // m/s in hold
-  double shake_fraction = 0;        // smallest of three axes, achieved over commanded
-  double arm_error = 0;             // m, RMS of the hand frame against plan in the reach
-  double finger_error = 0;          // m, RMS of fingertips against plan in the reach
-  double end_error = 0;             // m, hand frame against plan at the end of the reach
-  PoseError late_reach, held;       // largest from 0.8 T to the end of the reach; in hold
+  ContactWindow grip, hold, after;         // end of grip, last of hold, after the disturbances
+  double slip = 0, rotation = 0;           // m, rad: largest in the hand from grip to the end
+  double creep = 0;                        // m/s in hold
+  double shake_fraction = 0;               // smallest of three axes, achieved over commanded
+  double arm_error = 0;                    // m, RMS of the hand frame against plan in the reach
+  double finger_error = 0;                 // m, RMS of fingertips against plan in the reach
+  double end_error = 0;                    // m, hand frame against plan at the end of the reach
+  PoseError late_reach, held;              // largest from 0.8 T to the end of the reach; in hold
+  bool placed = false;                     // set down, the hand away again
+  double place_error = 0, place_tilt = 0;  // m, rad: from where and how it should stand
   LimitViolations violations;
   PerFinger<double> force_target{};   // N, mean over the window of hold
   PerFinger<double> force_sensed{};   // N, the same
@@ -89,10 +91,10 @@ struct Performance {
 // Called after every simulation step; for videos and tests.
 using StepObserver = std::function<void(const Simulation&, Phase)>;
 
-// Runs settle, reach, grip, lift, hold, disturb and after on `simulation` (placed at its start),
-// whose object is the body `object`. `robot` and `body` belong to one side; the plan's poses are
-// those of the world, its angles the side's.
-// Never throws for what physics does: divergence is an event.
+// Runs settle, reach, grip, lift, hold, disturb, after and, if the plan has one, place on
+// `simulation` (placed at its start), whose object is the body `object`. `robot` and `body` belong
+// to one side; the plan's poses are those of the world, its angles the side's. Never throws for
+// what physics does: divergence is an event.
 Performance Perform(Simulation& simulation, const RobotIo& robot, const std::string& object,
                     const RobotBody& body, const GraspPlan& plan, const PerformOptions& options,
                     const StepObserver& observer = {});

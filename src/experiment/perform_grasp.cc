@@ -86,6 +86,10 @@ void RecordPerformance(const Performance& p, const std::string& type, const Perf
   v["beyond_supply_bar"] = p.violations.pressure_high;
   v["beyond_valve_rate_bar_s"] = p.violations.valve_rate;
   if (p.reached > Phase::kDisturb) v["shake_fraction"] = p.shake_fraction;
+  if (p.placed) {
+    v["place_error_mm"] = 1e3 * p.place_error;
+    v["place_tilt_deg"] = kDegrees * p.place_tilt;
+  }
 }
 
 std::vector<Grasp> ShippedGrasps() {
@@ -116,6 +120,8 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene,
     ThrowUnless(grasp.type != "lateral", "the left hand does not perform lateral grasps");
     request.object.X_WO = MirroredObjectPose(request.object.X_WO);
   }
+  request.place = scene.objects[0].place;
+  if (body.mirrored && request.place) request.place->x() *= -1;
   request.table_height = scene.table.height;
   request.table_edge = scene.table.position.y() - scene.table.size.y() / 2;
   request.arm_start = robot.Read(simulation).arm_q;
@@ -138,6 +144,8 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene,
   }
   if (body.mirrored) {
     for (Pose& X : plan.plan->X_WH) X = MirroredBodyPose(X);
+    plan.plan->X_WO_place = MirroredObjectPose(plan.plan->X_WO_place);
+    for (Pose& X : plan.plan->X_WH_place) X = MirroredBodyPose(X);
     for (auto& tips : plan.plan->p_WF) {
       for (Eigen::Vector3d& p : tips) p = MirroredPoint(p);
     }

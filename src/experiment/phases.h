@@ -6,11 +6,11 @@
 
 namespace springgrasp {
 
-enum class Phase { kSettle, kReach, kGrip, kLift, kHold, kDisturb, kAfter, kDone };
+enum class Phase { kSettle, kReach, kGrip, kLift, kHold, kDisturb, kAfter, kPlace, kDone };
 
 constexpr std::string_view PhaseName(Phase phase) {
-  constexpr std::string_view kNames[] = {"settle", "reach",   "grip",  "lift",
-                                         "hold",   "disturb", "after", "done"};
+  constexpr std::string_view kNames[] = {"settle",  "reach", "grip",  "lift", "hold",
+                                         "disturb", "after", "place", "done"};
   return kNames[static_cast<int>(phase)];
 }
 
@@ -24,6 +24,12 @@ struct TrialCriteria {
   double shake_duration = 1.0;  // on each of three axes
   double after = 0.5;           // window after disturb
   double window = 0.5;          // averaging window of contacts
+  // Of a scene whose object has a `place`: the way there, the fingers' opening, the hand's way out,
+  // and how long the object must then rest.
+  double place = 2.0;
+  double release = 1.0;
+  double retreat = 1.5;
+  double rest = 0.5;
   // Magnitudes.
   double lift_height = 0.15;        // m
   double force_per_mass = 10;       // N/kg
@@ -40,7 +46,10 @@ struct TrialCriteria {
   double max_early_tilt_deg = 20;
   double max_slip = 0.02;  // m, in the hand from grip to the end
   double max_slip_deg = 15;
-  double palm_like_size = 0.075;  // m: proximal phalanges count as palm for such objects
+  double max_place_distance = 0.02;  // m, of the placed object from where it should stand
+  double max_place_tilt_deg = 10;
+  double max_place_speed = 0.005;  // m/s, of an object at rest
+  double palm_like_size = 0.075;   // m: proximal phalanges count as palm for such objects
 };
 
 }  // namespace springgrasp

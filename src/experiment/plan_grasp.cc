@@ -8,6 +8,7 @@
 #include "control/hanging_hand.h"
 #include "experiment/closing_plan.h"
 #include "experiment/grasp_requests.h"
+#include "experiment/place_plan.h"
 #include "grasp/generate.h"
 #include "kinematics/hand_motion.h"
 #include "kinematics/reach_plan.h"
@@ -25,8 +26,9 @@ constexpr double kWay = 0.72;                // of T, then the object enters the
 // with experiments/first_grasps, seeds below 1000).
 constexpr double kBlocked = -0.01;        // m, less than this on the way and another pose is tried
 constexpr double kWaitClearance = 0.015;  // m, between object and waiting fingers
-constexpr double kInset = 0.015;          // m, of a plate, between its edge and the contacts
-constexpr double kFastest = 1.5;          // s, reach of the robot's arm
+constexpr double kReleaseClearance = 0.05;  // m, between object and fingers that let go
+constexpr double kInset = 0.015;            // m, of a plate, between its edge and the contacts
+constexpr double kFastest = 1.5;            // s, reach of the robot's arm
 
 // Smallest distance of the open hand from the object over the first `samples` of the way, m.
 double ClearanceOnTheWay(const RobotHand& hand, const Shape& shape, const Pose& X_OW,
@@ -91,6 +93,39 @@ Eigen::VectorXd LastClear(const RobotHand& hand, const std::vector<Eigen::Vector
 template <typename Vector>
 std::vector<Vector> Fixed(const std::vector<Eigen::VectorXd>& path) {
   return std::vector<Vector>(path.begin(), path.end());
+}
+
+// Height of O above the lowest point of an object turned like this, m.
+double LowestPoint(const Shape& shape, const Eigen::Matrix3d& R_WO) {
+  if (shape.kind == Shape::Kind::kSphere) return shape.size.x() / 2;
+  const Eigen::Vector3d up_O = R_WO.transpose().col(2).cwiseAbs();
+  if (shape.kind == Shape::Kind::kCylinder) {
+    return shape.size.x() / 2 * up_O.head<2>().norm() + shape.size.z() / 2 * up_O.z();
+  }
+  return up_O.dot(shape.size) / 2;
+}
+
+// Adds the way to request.place; false with a reason where the arm finds none.
+bool PlanPlaceTo(const Arm& arm, const PlanRequest& request, const ReachPlan& reach, double T,
+                 GraspPlan& plan, std::string& reason) {
+  PlaceRequest place;
+  place.X_WO = place.X_WO_place = request.object.X_WO;
+  place.X_WO_place.translation() << *request.place,
+      request.table_height + LowestPoint(plan.shape, request.object.X_WO.linear());
+  place.X_WH = plan.X_WH;
+  place.T = T;
+  place.q_lifted = reach.lift.back();
+  place.lift = request.criteria.lift_height;
+  place.dt = request.dt;
+  place.criteria = request.criteria;
+  const PlacePlan way = PlanPlace(arm, place);
+  reason = way.reason;
+  if (!way.complete) return false;
+  plan.X_WO_place = place.X_WO_place;
+  plan.X_WH_place = way.X_WH;
+  plan.place = Fixed<ArmVector>(way.arm);
+  plan.retreat = Fixed<ArmVector>(way.retreat);
+  return true;
 }
 
 }  // namespace
@@ -242,6 +277,12 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     plan.lift = Fixed<ArmVector>(planned.lift);
     for (int axis = 0; axis < 3; ++axis) plan.shake[axis] = Fixed<ArmVector>(planned.shake[axis]);
     plan.X_HO = result.posture.X_HO;
+    if (request.place && !PlanPlaceTo(arm, request, planned, motion.T, plan, result.reason)) {
+      continue;
+    }
+    plan.released = power ? q_open
+                          : OpenedPosture(body.hand, result.posture, generate.shape,
+                                          closing(motion.involved), kReleaseClearance);
     for (std::size_t i = 0; i < q_hand.size(); ++i) {
       PerFinger<Eigen::Vector3d> tips = TipPositions(body.hand, q_hand[i]);
       for (Eigen::Vector3d& tip : tips) tip = planned.X_WH[i] * tip;

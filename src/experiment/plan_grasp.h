@@ -22,6 +22,7 @@ struct PlanRequest {
   ArmVector arm_start = ArmVector::Zero();  // rad
   TrialCriteria criteria;                   // lift and shake are planned too
   double dt = 0.005;                        // s
+  std::optional<Eigen::Vector2d> place;     // where to set it down, m
   bool object_centre = false;               // Eq. (6) alone, no contact points
   std::optional<BaselineRequest> baseline;  // moves the fingers in the springs' place
 };

@@ -64,7 +64,7 @@ void TrialWatch::Step(double dt) {
   window_.Add(simulation_.contacts(), X_WO, X_WH, torsion_, dt);
   WatchTable();
   if (!opposed_) WatchFirstContact(X_WO, X_WH, dt);
-  if (performance_.reached >= Phase::kLift) WatchHeld(X_WO, X_WH, dt);
+  if (performance_.reached >= Phase::kLift && !released_) WatchHeld(X_WO, X_WH, dt);
 }
 
 void TrialWatch::WatchTable() {
@@ -148,9 +148,10 @@ void TrialWatch::WatchHeld(const Pose& X_WO, const Pose& X_WH, double dt) {
 void TrialWatch::Dropped(const std::string& message) {
   if (over_) return;
   const Phase phase = performance_.reached;
-  const Outcome outcome = phase == Phase::kLift   ? Outcome::kDroppedLift
-                          : phase == Phase::kHold ? Outcome::kDroppedHold
-                                                  : Outcome::kDroppedDisturb;
+  const Outcome outcome = phase == Phase::kLift    ? Outcome::kDroppedLift
+                          : phase == Phase::kHold  ? Outcome::kDroppedHold
+                          : phase == Phase::kPlace ? Outcome::kDroppedPlace
+                                                   : Outcome::kDroppedDisturb;
   // A fall begins as a slip; the fall is what counts.
   slip_.reset();
   Record(outcome, message);

@@ -25,6 +25,8 @@ class TrialWatch {
   void Settled();
   // The grip has settled: slip counts from here.
   void Gripped();
+  // The fingers let go: nothing is lost or slips from here.
+  void Released() { released_ = true; }
   // After every simulation step of `dt` seconds.
   void Step(double dt);
   // The object is lost in the present phase (lift, hold, or later); ends the trial.
@@ -55,7 +57,7 @@ class TrialWatch {
   ContactAccumulator window_, opposed_window_;
   Pose X_WO_start_, X_HO_grip_ = Pose::Identity();
   std::optional<TrialEvent> slip_;
-  bool opposed_ = false, over_ = false;
+  bool opposed_ = false, over_ = false, released_ = false;
   double untouched_ = 0;  // s
 };
 

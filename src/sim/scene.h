@@ -58,6 +58,8 @@ struct SceneObject {
   // Width, depth and height of a fixed block on the table on which it stands (m); zero: none.
   Eigen::Vector3d pedestal = Eigen::Vector3d::Zero();
   double slot = 0;  // m, depth of a fixed slot that holds an upright plate (a box); 0: none
+  // x, y in W where it shall be set down on the table once it was held (m); absent: it is not.
+  std::optional<Eigen::Vector2d> place;
   Eigen::Vector3d colour{0.8, 0.25, 0.2};  // red, green, blue, 0..1
   SceneBelief believed;
 };

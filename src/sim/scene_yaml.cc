@@ -104,6 +104,13 @@ SceneObject ReadObject(YamlReader& yaml, const std::string& scene) {
   ThrowUnless(!(yaml.Has("pedestal") && (o.on_ring || !o.resting)),
               "{}: a pedestal is for objects that stand on it: no on_ring, pose of two numbers",
               yaml.Where("pedestal"));
+  if (yaml.Has("place")) {
+    std::vector<double> place;
+    yaml.Read("place", place, {-10, 10});
+    ThrowUnless(place.size() == 2, "{}: place has {} numbers, expected 2 (x, y)",
+                yaml.Where("place"), place.size());
+    o.place = Eigen::Vector2d(place[0], place[1]);
+  }
   yaml.Read("slot", o.slot, {0.002, 0.2});
   ThrowUnless(
       !yaml.Has("slot") ||
