@@ -43,12 +43,9 @@ void TurnAlike(const RobotHand::Finger& finger, double stop, Eigen::VectorXd& q)
 
 }  // namespace
 
-std::vector<Eigen::VectorXd> CloseAfterArrival(const RobotHand& hand,
-                                               const HandMotionResult& motion,
-                                               const PerFinger<bool>& involved,
-                                               const Eigen::VectorXd& q_wait,
-                                               const Eigen::VectorXd& q_contact, double dt,
-                                               double T) {
+std::vector<Eigen::VectorXd> CloseAfterArrival(
+    const RobotHand& hand, const HandMotionResult& motion, const PerFinger<bool>& involved,
+    const Eigen::VectorXd& q_wait, const Eigen::VectorXd& q_contact, double dt, double T) {
   const std::size_t widest = Widest(motion, involved, dt, T);
   // Uninvolved fingers and the palm are in place when the hand arrives.
   Eigen::VectorXd q_arrive = q_contact;
@@ -80,7 +77,8 @@ std::vector<Eigen::VectorXd> CloseAfterArrival(const RobotHand& hand,
       const RobotHand::Finger& finger = hand.fingers[f];
       for (const int j : {finger.j0, finger.j1}) {
         if (t <= T || f == kThumb) continue;
-        q[i][j] = q_arrive[j] + between(t, kLate * T, kLateClosed * T) * (q_contact[j] - q_arrive[j]);
+        q[i][j] =
+            q_arrive[j] + between(t, kLate * T, kLateClosed * T) * (q_contact[j] - q_arrive[j]);
       }
       // The object stops it only once the hand is there.
       TurnAlike(finger, t > T ? q_contact[finger.j0] : hand.tree.upper[finger.j0], q[i]);

@@ -16,11 +16,8 @@ namespace springgrasp {
 // with both joints on one valve push with their first phalanx before the last is round the object:
 // they follow once the others hold it, by 1.5 T. Joint angles at the motion's samples, those of
 // one valve as the valve makes them in free space.
-std::vector<Eigen::VectorXd> CloseAfterArrival(const RobotHand& hand,
-                                               const HandMotionResult& motion,
-                                               const PerFinger<bool>& involved,
-                                               const Eigen::VectorXd& q_wait,
-                                               const Eigen::VectorXd& q_contact, double dt,
-                                               double T);
+std::vector<Eigen::VectorXd> CloseAfterArrival(
+    const RobotHand& hand, const HandMotionResult& motion, const PerFinger<bool>& involved,
+    const Eigen::VectorXd& q_wait, const Eigen::VectorXd& q_contact, double dt, double T);
 
 }  // namespace springgrasp
