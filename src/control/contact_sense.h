@@ -32,8 +32,8 @@ void SenseContacts(const PneumaticHandModel& model, const ContactSettings& setti
                    const RobotState& state, bool free, double dt, ContactSense& sense);
 
 // Force (N) of each finger's pad along the unit vector `axis_H`, from the sensed torques of a hand
-// whose bodies stand at X_HB: the joints feel only its part in the plane in which the finger bends, which is taken to be the
-// projection of a force along the axis.
+// whose bodies stand at X_HB: the joints feel only its part in the plane in which the finger bends,
+// which is taken to be the projection of a force along the axis.
 PerFinger<double> PadForcesAlong(const HandLayout& layout, const KinematicTree& hand,
                                  const PerFinger<int>& tip_frames, const std::vector<Pose>& X_HB,
                                  const ValveVector& torque, const Eigen::Vector3d& axis_H);

@@ -24,7 +24,7 @@ Eigen::VectorXd Balance(const PneumaticHandModel& model, const RobotHand& hand,
 Eigen::VectorXd HangingPosture(const PneumaticHandModel& model, const RobotHand& hand,
                                const Eigen::Vector3d& g_H, const Eigen::VectorXd& q) {
   constexpr int kRounds = 30;
-  constexpr double kPart = 0.5;    // of the way to the balance, per round
+  constexpr double kPart = 0.5;   // of the way to the balance, per round
   constexpr double kDone = 1e-4;  // rad
   Eigen::VectorXd sunk = q;
   std::vector<Pose> X_HB;
@@ -44,8 +44,7 @@ RobotHand HangingHand(const PneumaticHandModel& model, const RobotHand& hand,
   RobotHand hanging = hand;
   const Eigen::VectorXd sunk = HangingPosture(model, hand, g_H, q);
   std::vector<Pose> X_HB;
-  const Eigen::VectorXd least =
-      Balance(model, hand, g_H, sunk, X_HB).cwiseMin(hand.tree.upper);
+  const Eigen::VectorXd least = Balance(model, hand, g_H, sunk, X_HB).cwiseMin(hand.tree.upper);
   hanging.tree.lower = hanging.tree.lower.cwiseMax(least);
   hanging.open = hanging.open.cwiseMax(least);
   return hanging;

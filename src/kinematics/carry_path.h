@@ -48,8 +48,8 @@ class ShakePostures {
                 double max_slope, double margin);
 
   // The parabola of the swivel that moves the joints least and most evenly, from the posture with
-  // `swivel` on `branch` at s = 0. Returns its cost: infinite where a joint would leave its range or
-  // be too fast.
+  // `swivel` on `branch` at s = 0. Returns its cost: infinite where a joint would leave its range
+  // or be too fast.
   double Fit(const SwivelInterval& branch, double swivel);
   // Joints on the last fit at s in [-1, 1].
   SevenJoints At(double s) const;

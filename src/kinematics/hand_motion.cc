@@ -252,8 +252,8 @@ std::vector<Pose> ClearApproach(const RobotHand& robot, const Shape& shape,
   const int n = static_cast<int>(X_OH.size());
   if (n == 0) return {};
   const int last = std::min(n - 1, static_cast<int>(std::lround(T / dt)));
-  // Where an offset is largest: first in the middle, then late, where the object must not enter along
-  // the fingers.
+  // Where an offset is largest: first in the middle, then late, where the object must not enter
+  // along the fingers.
   const double peaks[] = {std::max(0.3, 1 - 1.5 * closing), std::max(0.6, 1 - 0.8 * closing)};
   const auto bump = [&](int k, double peak) {
     const double s = dt * k / T;

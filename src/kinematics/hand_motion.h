@@ -59,8 +59,9 @@ HandMotionResult MapHandMotion(const HumanHand& human, const RobotHand& robot,
 // Moves a hand path away from the object where the open hand would touch it: adds the smallest
 // offsets a * bump(t) along a retreat direction (out of the palm's back, back along the fingers, or
 // between) so that the hand at `q_open` keeps `clearance` before the last `closing` part of T, and
-// from there what it has at the goal and more the farther it is from T. The bumps are 0 at both ends,
-// with zero velocity; the first is largest in the middle of the reach, the second towards its end. Returns the path in O; unchanged where it is clear.
+// from there what it has at the goal and more the farther it is from T. The bumps are 0 at both
+// ends, with zero velocity; the first is largest in the middle of the reach, the second towards its
+// end. Returns the path in O; unchanged where it is clear.
 std::vector<Pose> ClearApproach(const RobotHand& robot, const Shape& shape,
                                 const std::vector<Pose>& X_OH, const Eigen::VectorXd& q_open,
                                 double dt, double T, double clearance, double closing = 0.25);

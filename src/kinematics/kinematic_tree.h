@@ -54,7 +54,8 @@ Pose FramePose(const KinematicTree& tree, const std::vector<Pose>& X_RB, int fra
 void FrameJacobian(const KinematicTree& tree, const std::vector<Pose>& X_RB, int frame,
                    Eigen::Ref<Eigen::MatrixXd> J);
 
-// Torques (forces) with which gravity `g_R` (m/s^2) turns the joints, from the masses of the bodies.
+// Torques (forces) with which gravity `g_R` (m/s^2) turns the joints, from the masses of the
+// bodies.
 Eigen::VectorXd GravityTorques(const KinematicTree& tree, const std::vector<Pose>& X_RB,
                                const Eigen::Vector3d& g_R);
 

@@ -31,8 +31,8 @@ bool OnOneValve(const RobotHand& hand, int finger);
 // Joints at which the finger touches the shape first when its proximal joint closes from open, with
 // the distal joint bent beforehand. Of all bends the one is taken that brings both phalanges near
 // or, if `wanted_n_O` is given, that touches where the surface looks along it (the thumb, to oppose
-// the others). q of the other fingers is left alone. A finger on one valve closes with both joints alike. Returns the touch in that
-// posture.
+// the others). q of the other fingers is left alone. A finger on one valve closes with both joints
+// alike. Returns the touch in that posture.
 FingerTouch CloseFinger(const RobotHand& hand, int finger, const Pose& X_OH, const Shape& shape,
                         Eigen::VectorXd& q, const Eigen::Vector3d* wanted_n_O = nullptr);
 

@@ -70,9 +70,8 @@ TEST(GripControllerTest, FingersThatComeCloserThanTheyHeldRegripHarderUpToTheLim
   double last = controller.target_force()[kThumb];
   for (int slip = 1; slip <= 4; ++slip) {
     // The way in which the pads come closer, two millimetres of it.
-    const HandVector toward =
-        ClosingDirections(grip.hand, {0, 1, 2, 3, 4}, BodiesAt(grip.hand, grip.state.hand_q),
-                          grip.task.involved);
+    const HandVector toward = ClosingDirections(
+        grip.hand, {0, 1, 2, 3, 4}, BodiesAt(grip.hand, grip.state.hand_q), grip.task.involved);
     grip.state.hand_q += 0.02 * toward;
     grip.Run(controller, GripStage::kPressing, 0.3);
     EXPECT_EQ(controller.regrips(), slip);
@@ -81,6 +80,43 @@ TEST(GripControllerTest, FingersThatComeCloserThanTheyHeldRegripHarderUpToTheLim
     EXPECT_LE(now, grip.task.max_force);
     last = now;
   }
+}
+
+TEST(GripControllerTest, AnEnclosingHandTellsFingersThatSettleFromAnObjectThatEscapes) {
+  Grip grip(10);
+  grip.task.enclosing = true;
+  grip.task.involved = {true, true, true, true, true};
+  GripController controller(grip.model, grip.hand, {0, 1, 2, 3, 4}, grip.task);
+  grip.Run(controller, GripStage::kFree, 0.5);
+  grip.Run(controller, GripStage::kPressing, 3);
+  ASSERT_TRUE(controller.held());
+  // Pads come 12 mm nearer to their bases within two seconds, and the thumb gives way.
+  for (int i = 0; i < 100; ++i) {
+    for (const int j : {4, 6, 8, 10}) grip.state.hand_q[j] += 0.004;
+    grip.state.hand_q[2] += 0.01;
+    grip.Run(controller, GripStage::kPressing, 0.02);
+  }
+  EXPECT_EQ(controller.regrips(), 0);
+  // And as far again at once.
+  for (const int j : {4, 6, 8, 10}) grip.state.hand_q[j] += 0.4;
+  grip.Run(controller, GripStage::kPressing, 0.02);
+  EXPECT_EQ(controller.regrips(), 1);
+}
+
+TEST(GripControllerTest, AFingerThatMissesWhereItWasPlannedToTouchClosesOn) {
+  Grip grip(3);
+  GripController controller(grip.model, grip.hand, {0, 1, 2, 3, 4}, grip.task);
+  grip.Run(controller, GripStage::kFree, 0.5);
+  // It waits until the plan has moved it, then goes on when the plan is over.
+  grip.reference.qd = grip.reference.qdd = HandVector::Zero(11);
+  const double before = grip.state.pressure[3];
+  grip.Run(controller, GripStage::kClosing, 0.2);
+  EXPECT_NEAR(grip.state.pressure[3], before, 0.02);
+  grip.reference.qd[3] = 0.5;
+  grip.Run(controller, GripStage::kClosing, kDt);
+  grip.reference.qd[3] = 0;
+  grip.Run(controller, GripStage::kClosing, 0.05);
+  EXPECT_GT(grip.state.pressure[3], before + 0.05);
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ TEST(GripTest, FingertipGripDoesNoWorkWhenTheHandTurnsAsAWhole) {
   FingertipGrip grip;
   grip.involved = {true, true, true, false, false};
   const HandVector q = HandVector::Constant(11, 0.2);
-  const HandVector torque = FingertipGripTorque(tree, {0, 1, 2, 3, 4}, BodiesAt(tree, q), grip).torque;
+  const HandVector torque =
+      FingertipGripTorque(tree, {0, 1, 2, 3, 4}, BodiesAt(tree, q), grip).torque;
   EXPECT_GT(torque.cwiseAbs().maxCoeff(), 0.05);
   EXPECT_EQ(torque[7], 0);   // ring
   EXPECT_EQ(torque[10], 0);  // pinkie
@@ -25,7 +26,8 @@ TEST(GripTest, FingertipGripTorqueIsTheGradientOfTheDistanceBetweenTheOpposedPad
   grip.involved = {true, true, false, false, false};
   grip.force = 2;
   const HandVector q = HandVector::LinSpaced(11, -0.2, 0.4);
-  const HandVector torque = FingertipGripTorque(tree, {0, 1, 2, 3, 4}, BodiesAt(tree, q), grip).torque;
+  const HandVector torque =
+      FingertipGripTorque(tree, {0, 1, 2, 3, 4}, BodiesAt(tree, q), grip).torque;
   const auto distance = [&](const HandVector& at) {
     std::vector<Pose> X;
     ForwardKinematics(tree, at, X);
@@ -44,13 +46,13 @@ TEST(GripTest, EvenSharesPressWithTheForcesThatAreReported) {
   FingertipGrip grip;
   grip.involved = {true, true, true, false, false};
   grip.force = 4;
-  const GripTorque even =
-      FingertipGripTorque(tree, {0, 1, 2, 3, 4}, BodiesAt(tree, HandVector::Constant(11, 0.2)), grip);
+  const GripTorque even = FingertipGripTorque(tree, {0, 1, 2, 3, 4},
+                                              BodiesAt(tree, HandVector::Constant(11, 0.2)), grip);
   EXPECT_EQ(even.force[kThumb], 4);
   EXPECT_EQ(even.force[kIndex] + even.force[kMiddle], 4);
   grip.share[kIndex] = 3;
-  const GripTorque uneven =
-      FingertipGripTorque(tree, {0, 1, 2, 3, 4}, BodiesAt(tree, HandVector::Constant(11, 0.2)), grip);
+  const GripTorque uneven = FingertipGripTorque(
+      tree, {0, 1, 2, 3, 4}, BodiesAt(tree, HandVector::Constant(11, 0.2)), grip);
   EXPECT_NEAR(uneven.torque[3], 1.5 * even.torque[3], 1e-12);
   EXPECT_NEAR(uneven.torque[5], 0.5 * even.torque[5], 1e-12);
   EXPECT_EQ(uneven.torque[1], even.torque[1]);
@@ -61,10 +63,12 @@ TEST(GripTest, ClosingDirectionsAreOrthonormalAndHoldTheTorqueOfTheGrip) {
   FingertipGrip grip;
   grip.involved = {true, true, true, false, false};
   const HandVector q = HandVector::LinSpaced(11, -0.2, 0.4);
-  const Eigen::MatrixXd d = ClosingDirections(tree, {0, 1, 2, 3, 4}, BodiesAt(tree, q), grip.involved);
+  const Eigen::MatrixXd d =
+      ClosingDirections(tree, {0, 1, 2, 3, 4}, BodiesAt(tree, q), grip.involved);
   ASSERT_EQ(d.cols(), 2);
   EXPECT_TRUE((d.transpose() * d).isIdentity(1e-9));
-  const Eigen::VectorXd torque = FingertipGripTorque(tree, {0, 1, 2, 3, 4}, BodiesAt(tree, q), grip).torque;
+  const Eigen::VectorXd torque =
+      FingertipGripTorque(tree, {0, 1, 2, 3, 4}, BodiesAt(tree, q), grip).torque;
   EXPECT_LT((torque - d * (d.transpose() * torque)).norm(), 1e-9);
 }
 
@@ -73,8 +77,8 @@ TEST(GripTest, EnclosingFingersPressTogetherWithTheForceAskedFor) {
   EnclosingGrip grip;
   grip.involved.fill(true);
   grip.force = 8;
-  const GripTorque t =
-      EnclosingGripTorque(tree, {0, 1, 2, 3, 4}, BodiesAt(tree, HandVector::Constant(11, 0.2)), grip);
+  const GripTorque t = EnclosingGripTorque(tree, {0, 1, 2, 3, 4},
+                                           BodiesAt(tree, HandVector::Constant(11, 0.2)), grip);
   EXPECT_NEAR(t.force[1] + t.force[2] + t.force[3] + t.force[4], 8, 1e-12);
   EXPECT_NEAR(t.torque[4], t.force[kIndex] * 0.05, 1e-12);  // pads 50 mm from the last joint
 }

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "kinematics/power_posture.h"
 #include "posture_requests.h"
 
 namespace springgrasp {
@@ -123,6 +124,24 @@ INSTANTIATE_TEST_SUITE_P(Objects, PowerPostureTest,
                          Values("cylinder:0.04x0.18", "cylinder:0.05x0.18", "cylinder:0.06x0.18",
                                 "cylinder:0.065x0.2", "cylinder:0.08x0.2", "sphere:0.06",
                                 "sphere:0.08", "box:0.04x0.06x0.16"));
+
+TEST(PowerPostureTest, JointsOnOneValveAreBentAlikeUntilThePhalanxIsStopped) {
+  const RobotHand& hand = TestRobotHand();
+  for (const char* text : {"cylinder:0.04x0.18", "cylinder:0.05x0.18", "sphere:0.07"}) {
+    const ContactRequest request = MakeRequest("power", ParseShape(text), {0, -1, 0});
+    const ContactPosture posture = SolveContactPosture(hand, request);
+    std::vector<Pose> X_HB;
+    ForwardKinematics(hand.tree, posture.q, X_HB);
+    for (const int f : {kRing, kPinkie}) {
+      ASSERT_TRUE(OnOneValve(hand, f));
+      const double proximal = posture.q[hand.fingers[f].j0], distal = posture.q[hand.fingers[f].j1];
+      EXPECT_GE(distal, proximal - 1e-9) << text;
+      if (distal < proximal + 1e-3) continue;
+      const FingerTouch touch = TouchOf(hand, f, posture.X_HO.inverse(), request.shape, X_HB);
+      EXPECT_LT(touch.proximal, 0.001) << text << " " << kFingerNames[f];
+    }
+  }
+}
 
 TEST(ContactPostureTest, TheFrameOfTheGraspPutsTheObjectRight) {
   const ContactRequest request = MakeRequest("pinch", ParseShape("sphere:0.04"), {0, 0, 1});

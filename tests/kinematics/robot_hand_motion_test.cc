@@ -100,6 +100,36 @@ TEST(ClearApproachTest, LeavesAClearPathAloneAndKeepsBothEnds) {
   EXPECT_GT(most, 0.01);
 }
 
+TEST(ClearApproachTest, AnObjectThatWouldSlideInAlongTheFingersComesFromAbove) {
+  const Case c = MakeCase("power", "cylinder:0.05x0.18", {0, -1, 0});
+  const RobotHand& robot = TestRobotHand();
+  const Eigen::VectorXd q_open =
+      OpenedPosture(robot, c.posture, c.motion.shape, c.motion.involved, 1);
+  std::vector<Pose> along;
+  const Pose X_OH = c.posture.X_HO.inverse();
+  const Eigen::Vector3d fingers = X_OH.linear() * robot.R_HA.col(0);
+  for (int k = 0; k <= 200; ++k) {
+    Pose X = X_OH;
+    X.translation() -= 0.2 * (1 - MinimumJerk(k / 200.0)) * fingers;
+    along.push_back(X);
+  }
+  std::vector<Pose> X_HB;
+  ForwardKinematics(robot.tree, q_open, X_HB);
+  const auto least = [&](const std::vector<Pose>& path) {
+    double distance = 1;
+    for (int k = 0; k < 180; ++k) {
+      distance = std::min(distance, HandDistance(robot, X_HB, path[k], c.motion.shape,
+                                                 {false, true, true, true, true}, false));
+    }
+    return distance;
+  };
+  const std::vector<Pose> moved =
+      ClearApproach(robot, c.motion.shape, along, q_open, 0.005, 1, 0.02);
+  EXPECT_LT(least(along), 0.003);
+  EXPECT_GT(least(moved), 0.005);
+  EXPECT_LT((moved.back().matrix() - along.back().matrix()).norm(), 1e-9);
+}
+
 TEST(HandMotionTest, RefusesSeriesOfDifferentLength) {
   Case c = MakeCase("pinch", "sphere:0.04", {0, -1, 0});
   c.motion.p_HF.pop_back();
