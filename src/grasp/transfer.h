@@ -14,9 +14,10 @@ namespace springgrasp {
 // as they are.
 Grasp EncloseAlongAxis(const Grasp& grasp, const Shape& shape);
 
-// Contacts of a lateral grasp of a box on another: thumb and fingers on the two large faces, where
-// they were as fractions of these, but `inset` (m) from their edges, or in the middle of narrower
-// ones. Rays from O would move along the faces with the thickness. Both shapes must be boxes.
+// Contacts of a lateral grasp of a box on another: thumb and fingers opposite each other on the two
+// large faces, where their middle was as fractions of these, but `inset` (m) from the edges, or in
+// the middle of narrower ones. Rays from O would move along the faces with the thickness. Both
+// shapes must be boxes.
 PerFinger<Contact> PlateContacts(const Grasp& grasp, const Shape& shape, double tip_radius,
                                  double inset);
 
