@@ -40,8 +40,9 @@ PerFinger<Contact> PlateContacts(const Grasp& grasp, const Shape& shape, double 
   ThrowUnless(shape.kind == Shape::Kind::kBox && grasp.shape.kind == Shape::Kind::kBox,
               "{}: contacts of a plate on {} instead of a box", grasp.name,
               FormatShape(shape.kind == Shape::Kind::kBox ? grasp.shape : shape));
-  Eigen::Index thin = 0;
+  Eigen::Index thin = 0, longest = 0;
   shape.size.minCoeff(&thin);
+  shape.size.maxCoeff(&longest);
   const PerFinger<Contact> learned = ContactsOn(grasp, grasp.shape, grasp.tip_radius);
   Eigen::Vector3d others = Eigen::Vector3d::Zero();
   double count = 0;
@@ -58,6 +59,7 @@ PerFinger<Contact> PlateContacts(const Grasp& grasp, const Shape& shape, double 
   for (int k = 0; k < 3; ++k) {
     const double room = std::max(0.0, shape.size[k] / 2 - inset);
     middle[k] = std::clamp(middle[k], -room, room);
+    if (k == longest) middle[k] = grasp.X_OH.translation()[k] < 0 ? -room : room;
   }
   PerFinger<Contact> contacts;
   for (int i = 0; i < kNumFingers; ++i) {

@@ -15,9 +15,9 @@ namespace springgrasp {
 Grasp EncloseAlongAxis(const Grasp& grasp, const Shape& shape);
 
 // Contacts of a lateral grasp of a box on another: thumb and fingers opposite each other on the two
-// large faces, where their middle was as fractions of these, but `inset` (m) from the edges, or in
-// the middle of narrower ones. Rays from O would move along the faces with the thickness. Both
-// shapes must be boxes.
+// large faces, `inset` (m) from that end of the longest side where the wrist is, else where they
+// were as a fraction of the face, but `inset` from the edges or in the middle of a narrower one.
+// Rays from O would move along the faces with the thickness. Both shapes must be boxes.
 PerFinger<Contact> PlateContacts(const Grasp& grasp, const Shape& shape, double tip_radius,
                                  double inset);
 
