@@ -28,6 +28,7 @@ constexpr double kBlocked = -0.01;        // m, less than this on the way and an
 constexpr double kWaitClearance = 0.015;  // m, between object and waiting fingers
 constexpr double kReleaseClearance = 0.05;  // m, between object and fingers that let go
 constexpr double kInset = 0.015;            // m, of a plate, between its edge and the contacts
+constexpr double kSpareClearance = 0.003;   // m, between a plate and what shall not touch it
 constexpr double kFastest = 1.5;            // s, reach of the robot's arm
 
 // Smallest distance of the open hand from the object over the first `samples` of the way, m.
@@ -199,6 +200,8 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     reach.X_HO = result.posture.X_HO;
     reach.X_HG = result.posture.X_HG;
     reach.tilt_free = grasp.type != "power";
+    reach.involved = motion.involved;
+    if (grasp.type == "lateral") reach.spare_clearance = kSpareClearance;
     reach.table_height = request.table_height;
     reach.table_edge = request.table_edge;
     reach.body = &body.arm_body;

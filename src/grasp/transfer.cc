@@ -71,23 +71,32 @@ PerFinger<Contact> PlateContacts(const Grasp& grasp, const Shape& shape, double 
   ThrowUnless(shape.kind == Shape::Kind::kBox && grasp.shape.kind == Shape::Kind::kBox,
               "{}: contacts of a plate on {} instead of a box", grasp.name,
               FormatShape(shape.kind == Shape::Kind::kBox ? grasp.shape : shape));
-  Eigen::Index thin = 0;
+  Eigen::Index thin = 0, longest = 0;
   shape.size.minCoeff(&thin);
+  shape.size.maxCoeff(&longest);
   const PerFinger<Contact> learned = ContactsOn(grasp, grasp.shape, grasp.tip_radius);
-  double thumb = learned[kThumb].p_OC[thin], others = 0;
+  Eigen::Vector3d others = Eigen::Vector3d::Zero();
+  double count = 0;
   for (int i = kIndex; i < kNumFingers; ++i) {
-    if (grasp.involved[i]) others = learned[i].p_OC[thin];
+    if (!grasp.involved[i]) continue;
+    others += learned[i].p_OC;
+    ++count;
   }
-  const double side = thumb >= others ? 1 : -1;
+  others /= std::max(1.0, count);
+  const double side = learned[kThumb].p_OC[thin] >= others[thin] ? 1 : -1;
+  // Opposite each other.
+  Eigen::Vector3d middle = 0.5 * (learned[kThumb].p_OC + others);
+  middle = middle.cwiseProduct(shape.size.cwiseQuotient(grasp.shape.size));
+  for (int k = 0; k < 3; ++k) {
+    const double room = std::max(0.0, shape.size[k] / 2 - inset);
+    middle[k] = std::clamp(middle[k], -room, room);
+    if (k == longest) middle[k] = grasp.X_OH.translation()[k] < 0 ? -room : room;
+  }
   PerFinger<Contact> contacts;
   for (int i = 0; i < kNumFingers; ++i) {
     if (!grasp.involved[i]) continue;
     contacts[i].n_O = (i == kThumb ? side : -side) * Eigen::Vector3d::Unit(thin);
-    contacts[i].p_OC = learned[i].p_OC.cwiseProduct(shape.size.cwiseQuotient(grasp.shape.size));
-    for (int k = 0; k < 3; ++k) {
-      const double room = std::max(0.0, shape.size[k] / 2 - inset);
-      contacts[i].p_OC[k] = std::clamp(contacts[i].p_OC[k], -room, room);
-    }
+    contacts[i].p_OC = middle;
     contacts[i].p_OC[thin] = contacts[i].n_O[thin] * (shape.size[thin] / 2 + tip_radius);
   }
   return contacts;

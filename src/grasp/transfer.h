@@ -19,9 +19,10 @@ Grasp EncloseAlongAxis(const Grasp& grasp, const Shape& shape);
 void TakeContacts(const Grasp& from, Grasp& to);
 void TakeSprings(const Grasp& from, Grasp& to);
 
-// Contacts of a lateral grasp of a box on another: thumb and fingers on the two large faces, where
-// they were as fractions of these, but `inset` (m) from their edges, or in the middle of narrower
-// ones. Rays from O would move along the faces with the thickness. Both shapes must be boxes.
+// Contacts of a lateral grasp of a box on another: thumb and fingers opposite each other on the two
+// large faces, `inset` (m) from that end of the longest side where the wrist is, else where they
+// were as a fraction of the face, but `inset` from the edges or in the middle of a narrower one.
+// Rays from O would move along the faces with the thickness. Both shapes must be boxes.
 PerFinger<Contact> PlateContacts(const Grasp& grasp, const Shape& shape, double tip_radius,
                                  double inset);
 

@@ -32,7 +32,8 @@ constexpr double kMinProximalLever = 0.035, kMinDistalLever = 0.018;  // m
 constexpr double kPad = 0.2;     // contact away from the pad's palmar side
 constexpr double kRadial = 0.1;  // rad, lateral: push of the index off its radial axis
 constexpr double kMaxTurningLever = 0.005, kTurningLever = 0.002;  // m
-constexpr double kFist = 1.4;    // rad, of both joints
+constexpr double kFist = 1.4;                                      // rad, of both joints
+constexpr double kAcross = 1.5;                                    // rad, of the index's last joint
 constexpr double kTurned = 1.2;  // rad, lateral: where the search for the thumb's turn begins
 constexpr int kStarts = 5;
 // What presses in a power grasp, m.
@@ -148,12 +149,16 @@ class FingertipRows {
     const Eigen::Vector3d z = request_.X_OG.linear().col(2);
     r[row++] = std::atan2(line.dot(z.cross(wrist)), z.dot(wrist)) / kWrist;
     for (int f = 0; f < kNumFingers; ++f) {
-      const Eigen::Vector2d& human = request_.human.sigma[f];
       for (int k = 0; k < 2; ++k) {
         const int j = k == 0 ? hand_.fingers[f].j0 : hand_.fingers[f].j1;
-        // Fingers beside a lateral grasp are a fist.
-        const double spare = lateral_ ? kFist : hand_.open[j];
-        r[row++] = request_.involved[f] ? (q[j] - human[k]) / kLikeHuman : (q[j] - spare) / kOpen;
+        if (lateral_ && f != kThumb) {
+          // A fist, of which the index lays its last phalanx along the plate.
+          const double bent = request_.involved[f] ? (k == 0 ? 0 : kAcross) : kFist;
+          r[row++] = (q[j] - bent) / kOpen;
+        } else {
+          r[row++] = request_.involved[f] ? (q[j] - request_.human.sigma[f][k]) / kLikeHuman
+                                          : (q[j] - hand_.open[j]) / kOpen;
+        }
       }
     }
     r[row++] = hand_.palm >= 0 ? q[hand_.palm] / kPalmJoint : 0;
@@ -188,7 +193,12 @@ class FingertipRows {
 
 // Object pose that puts thumb and mean other contact on the line of the tips, wrist side right.
 Pose SeedObject(const RobotHand& hand, const ContactRequest& request, const Eigen::VectorXd& q) {
-  const PerFinger<Eigen::Vector3d> tips = TipPositions(hand, q);
+  PerFinger<Eigen::Vector3d> tips = TipPositions(hand, q);
+  if (request.type == "lateral") {
+    std::vector<Pose> X_HB;
+    ForwardKinematics(hand.tree, q, X_HB);
+    tips[kIndex] = SideContact(hand, X_HB, kIndex);
+  }
   Eigen::Vector3d p_HOthers = Eigen::Vector3d::Zero(), p_OOthers = Eigen::Vector3d::Zero();
   double others = 0;
   for (int f = kIndex; f < kNumFingers; ++f) {
@@ -225,11 +235,14 @@ std::vector<Start> Starts(const RobotHand& hand, const ContactRequest& request,
         for (const double finger1 : {0.2, 0.6, 1.0}) {
           Start start;
           start.q = hand.open;
-          if (request.type == "lateral" && hand.opposition >= 0) start.q[hand.opposition] = kTurned;
           for (int f = 0; f < kNumFingers; ++f) {
             if (!request.involved[f]) continue;
             start.q[hand.fingers[f].j0] = f == kThumb ? thumb0 : finger0;
             start.q[hand.fingers[f].j1] = f == kThumb ? thumb1 : finger1;
+          }
+          if (request.type == "lateral") {
+            start.q[hand.fingers[kIndex].j1] = kAcross;
+            if (hand.opposition >= 0) start.q[hand.opposition] = kTurned;
           }
           start.q = start.q.cwiseMax(hand.tree.lower).cwiseMin(hand.tree.upper);
           start.X_HO = SeedObject(hand, request, start.q);

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "kinematics/carry_path.h"
 #include "kinematics/reach_path.h"
+#include "kinematics/shape_distance.h"
 
 namespace springgrasp {
 namespace {
@@ -51,6 +52,7 @@ Pose Moved(const Pose& X_WH, const Eigen::Vector3d& by_W) {
 // Why hand poses were no goal, counted.
 struct GoalFaults {
   int hand_in_table = 0, out_of_reach = 0, forearm_in_table = 0, no_lift = 0, no_shake = 0;
+  int in_object = 0;
 };
 
 std::string Describe(const GoalFaults& faults) {
@@ -60,10 +62,22 @@ std::string Describe(const GoalFaults& faults) {
   };
   add(faults.out_of_reach, "out of the arm's reach");
   add(faults.hand_in_table, "with the hand in the table");
+  add(faults.in_object, "with palm or spare fingers in the object");
   add(faults.forearm_in_table, "with the forearm in the table");
   add(faults.no_lift, "that cannot be lifted");
   add(faults.no_shake, "that cannot be shaken");
   return text;
+}
+
+// Of the palm and the fingers that shall not touch, from the object, m.
+double SpareClearance(const RobotHand& hand, const ReachRequest& request,
+                      const FreeMotion& motion) {
+  if (request.spare_clearance <= 0) return kFar;
+  std::vector<Pose> X_HB;
+  ForwardKinematics(hand.tree, request.q_hand.back(), X_HB);
+  PerFinger<bool> spare;
+  for (int f = 0; f < kNumFingers; ++f) spare[f] = !request.involved[f];
+  return HandDistance(hand, X_HB, motion.X_OF * request.X_HO.inverse(), request.shape, spare, true);
 }
 
 // The goal of one free motion: reached, liftable, shakable, clear of the table.
@@ -80,6 +94,9 @@ std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRe
   const double above = HandAboveTable(hand, goal.X_WH, request.q_hand.back(), request.table_height,
                                       request.table_edge);
   if (above < kLeastClearance) return fails(faults.hand_in_table);
+  if (SpareClearance(hand, request, motion) < request.spare_clearance) {
+    return fails(faults.in_object);
+  }
   ArmIkOptions ik;
   ik.starts = 4;
   const std::optional<Eigen::VectorXd> q =

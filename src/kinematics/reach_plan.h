@@ -30,6 +30,10 @@ struct ReachRequest {
   // Where the arm stands before (arm.joints' values). If the path begins at that hand pose, so does
   // the joint path; absent: the joint path begins in any posture.
   std::optional<Eigen::VectorXd> q_start;
+  // Fingers that touch the object; palm and all others stay `spare_clearance` (m) off it at
+  // contact, however the hand is turned about it. 0: not looked at.
+  PerFinger<bool> involved = {};
+  double spare_clearance = 0;
   // What the arm could hit of its own robot; null: not looked at.
   const ArmBody* body = nullptr;
   // The hand's path for an object posed at X_WO * X_OF (F: the free motion of the grasp about the

@@ -119,5 +119,19 @@ TEST(GripControllerTest, AFingerThatMissesWhereItWasPlannedToTouchClosesOn) {
   EXPECT_GT(grip.state.pressure[3], before + 0.05);
 }
 
+TEST(GripControllerTest, InAKeyGripTheThumbAlonePressesAndTheOthersKeepTheirPlace) {
+  Grip grip(3);
+  grip.task.push_H = Eigen::Vector3d(0, 0, -1);
+  GripController controller(grip.model, grip.hand, {0, 1, 2, 3, 4}, grip.task);
+  grip.Run(controller, GripStage::kFree, 0.5);
+  const double index = grip.state.pressure[3];
+  grip.Run(controller, GripStage::kPressing, 3);
+  EXPECT_TRUE(controller.held());
+  EXPECT_NEAR(controller.target_force()[kThumb], 3, 1e-9);
+  EXPECT_EQ(controller.target_force()[kIndex], 0);
+  EXPECT_EQ(controller.SensedForce()[kIndex], 0);
+  EXPECT_NEAR(grip.state.pressure[3], index, 0.05);
+}
+
 }  // namespace
 }  // namespace springgrasp

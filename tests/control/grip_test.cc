@@ -89,5 +89,26 @@ TEST(GripTest, ForceHoldsTheWeightByFrictionAndIsBounded) {
   EXPECT_EQ(GripForceFor(50, 0.8, 0, 1, 5), 5);
 }
 
+TEST(GripTest, KeyGripTorqueIsTheThumbsWorkAlongItsPushAndNobodyElses) {
+  const KinematicTree tree = ToyHand();
+  const HandVector q = HandVector::LinSpaced(11, -0.2, 0.4);
+  const Eigen::Vector3d push = Eigen::Vector3d(0.6, 0, -0.8);
+  const GripTorque grip = KeyGripTorque(tree, {0, 1, 2, 3, 4}, q, push, 4);
+  EXPECT_EQ(grip.force[kThumb], 4);
+  EXPECT_EQ(grip.force[kIndex], 0);
+  const auto along = [&](const HandVector& at) {
+    std::vector<Pose> X;
+    ForwardKinematics(tree, at, X);
+    return push.dot(FramePose(tree, X, 0).translation());
+  };
+  for (int j = 0; j < DocumentedHand().num_joints(); ++j) {
+    HandVector high = q, low = q;
+    high[j] += 1e-6;
+    low[j] -= 1e-6;
+    EXPECT_NEAR(grip.torque[j], 4 * (along(high) - along(low)) / 2e-6, 1e-6) << j;
+  }
+  EXPECT_GT(grip.torque.cwiseAbs().maxCoeff(), 0.05);
+}
+
 }  // namespace
 }  // namespace springgrasp

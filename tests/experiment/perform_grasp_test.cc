@@ -52,6 +52,17 @@ TEST(PerformGraspTest, TheLeftHandPerformsTheMirroredPowerGrasp) {
   EXPECT_LT(result.values.at("arm_hold_error_mm"), 3);
 }
 
+// With torso and platform free to move, too: the arm carries its load all the same.
+TEST(PerformGraspTest, ALateralGraspHoldsAPlate) {
+  Trial trial;
+  trial.grasp = ReadGrasp(SourceFolder() + "/models/grasps/lateral.yaml");
+  trial.scene = ReadScene(SourceFolder() + "/scenes/lateral_plate.yaml");
+  const TrialResult result = trial.Run();
+  EXPECT_EQ(result.outcome, Outcome::kSuccess) << result.message;
+  EXPECT_LT(result.values.at("arm_hold_error_mm"), 3);
+  EXPECT_GT(result.values.at("opposition_deg"), 120);
+}
+
 TEST(PerformGraspTest, APinchHoldsTheForceItChoseAndStaysBelowTheLimit) {
   Trial trial;
   trial.scene.objects[0].believed.friction = 0.25;

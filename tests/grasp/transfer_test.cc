@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/error.h"
 #include "grasp/generate.h"
 
 namespace springgrasp {
@@ -65,6 +66,37 @@ TEST(EncloseAlongAxisTest, OtherGraspsStayAsTheyAre) {
   given.object_given = false;
   given.type = "pinch";
   EXPECT_TRUE(EncloseAlongAxis(given, cylinder).X_OH.isApprox(given.X_OH));
+}
+
+// A key grip of a plate, thumb on top, 2 mm from an edge and seen 6 mm apart.
+Grasp KeyGrip() {
+  Grasp grasp;
+  grasp.type = "lateral";
+  grasp.involved = {true, true, false, false, false};
+  grasp.shape = ParseShape("box:0.08x0.06x0.005");
+  grasp.tip_radius = 0.008;
+  grasp.rays[kThumb] = RayOfContact(grasp.shape, {0.008, 0.028, 0.0105});
+  grasp.rays[kIndex] = RayOfContact(grasp.shape, {0.002, 0.028, -0.0105});
+  return grasp;
+}
+
+TEST(PlateContactsTest, LieOppositeEachOtherOnTheFacesOffTheEdges) {
+  for (const char* text : {"box:0.08x0.06x0.002", "box:0.08x0.06x0.01", "box:0.16x0.12x0.005"}) {
+    const Shape plate = ParseShape(text);
+    const PerFinger<Contact> contacts = PlateContacts(KeyGrip(), plate, 0.009, 0.015);
+    const Vector3d &thumb = contacts[kThumb].p_OC, &index = contacts[kIndex].p_OC;
+    EXPECT_NEAR(thumb.z(), plate.size.z() / 2 + 0.009, 1e-12) << text;
+    EXPECT_LT((thumb - Vector3d(index.x(), index.y(), -index.z())).norm(), 1e-12) << text;
+    EXPECT_NEAR(thumb.x(), 0.005 / 0.08 * plate.size.x(), 1e-6) << text;
+    EXPECT_NEAR(thumb.y(), plate.size.y() / 2 - 0.015, 1e-12) << text;
+    EXPECT_EQ(contacts[kThumb].n_O, Vector3d(0, 0, 1)) << text;
+    EXPECT_EQ(contacts[kIndex].n_O, Vector3d(0, 0, -1)) << text;
+  }
+  // In the middle of what is narrower than both margins.
+  const PerFinger<Contact> narrow =
+      PlateContacts(KeyGrip(), ParseShape("box:0.08x0.02x0.005"), 0.009, 0.015);
+  EXPECT_EQ(narrow[kThumb].p_OC.y(), 0);
+  EXPECT_THROW(PlateContacts(KeyGrip(), ParseShape("sphere:0.04"), 0.009, 0.015), Error);
 }
 
 }  // namespace

@@ -97,6 +97,27 @@ TEST(ContactPostureTest, SkewedContactsSlideUntilTheyOppose) {
   EXPECT_LT(posture.slide, 0.010);
 }
 
+// Thumb from -x, the thumb's side of the hand towards -x of O.
+TEST(ContactPostureTest, LateralHoldsAPlateOnTheIndexsRadialSide) {
+  const RobotHand& hand = TestOppositionHand();
+  for (const double thickness : {0.002, 0.005, 0.01}) {
+    const Shape plate{Shape::Kind::kBox, Eigen::Vector3d(thickness, 0.16, 0.06)};
+    ContactRequest request = MakeRequest("lateral", plate, {0, 0.7, 0.7});
+    for (const int f : {kThumb, kIndex}) request.p_OC[f].y() += 0.065;
+    request.X_OG.translation().y() += 0.065;
+    request.human = TargetFromHuman(TestHumanHand(), TestHumanHand().rest, hand);
+    const ContactPosture posture = SolveContactPosture(hand, request);
+    EXPECT_LT(std::abs(posture.gap[kThumb]), 0.0005) << thickness;
+    EXPECT_LT(std::abs(posture.gap[kIndex]), 0.0005) << thickness;
+    EXPECT_LT(posture.penetration, 0.002) << thickness;
+    EXPECT_GT(posture.opposition_deg, 170) << thickness;
+    // The index pushes along its radial axis, y of H, as the verdict asks.
+    const Eigen::Vector3d push_H = posture.X_HO.linear() * Eigen::Vector3d(-1, 0, 0);
+    EXPECT_GT(push_H.y(), std::cos(0.5)) << thickness;
+    EXPECT_GT(posture.q[hand.opposition], 0.8) << thickness;
+  }
+}
+
 class PowerPostureTest : public ::testing::TestWithParam<std::string> {};
 
 // Bends are limited so that thumb and fingers do not cross; gripping then pulls the object in.

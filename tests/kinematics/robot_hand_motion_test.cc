@@ -130,6 +130,33 @@ TEST(ClearApproachTest, AnObjectThatWouldSlideInAlongTheFingersComesFromAbove) {
   EXPECT_LT((moved.back().matrix() - along.back().matrix()).norm(), 1e-9);
 }
 
+TEST(EdgeOnApproachTest, EndsAsThePathAndComesAlongThePlate) {
+  const Pose X_HG = MakePose({0.1, 0.02, -0.05}, Eigen::Quaterniond::Identity());
+  std::vector<Pose> path;
+  for (int k = 0; k <= 300; ++k) {
+    const double left = 1 - MinimumJerk(k / 200.0);
+    path.push_back(MakePose(left * Eigen::Vector3d(0.2, 0.1, 0.3),
+                            Eigen::Quaterniond(Eigen::AngleAxisd(left, Eigen::Vector3d::UnitX()))));
+  }
+  const Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  const std::vector<Pose> edge_on = EdgeOnApproach(path, X_HG, normal, 0.005, 1);
+  ASSERT_EQ(edge_on.size(), path.size());
+  EXPECT_LT((edge_on.front().matrix() - path.front().matrix()).norm(), 1e-9);
+  for (int k = 200; k <= 300; ++k) {
+    EXPECT_LT((edge_on[k].matrix() - path[k].matrix()).norm(), 1e-9) << k;
+  }
+  const Eigen::Vector3d goal = (path.back() * X_HG).translation();
+  double farthest = 0;
+  for (int k = 131; k < 200; ++k) {
+    const Eigen::Vector3d off = (edge_on[k] * X_HG).translation() - goal;
+    EXPECT_LE(off.z(), 1e-9) << k;   // on the fingers' side ...
+    EXPECT_GT(off.z(), -0.01) << k;  // ... and near
+    farthest = std::max(farthest, off.head<2>().norm());
+    EXPECT_LT((edge_on[k].linear() - path.back().linear()).norm(), 1e-9) << k;
+  }
+  EXPECT_GT(farthest, 0.03);
+}
+
 TEST(HandMotionTest, RefusesSeriesOfDifferentLength) {
   Case c = MakeCase("pinch", "sphere:0.04", {0, -1, 0});
   c.motion.p_HF.pop_back();

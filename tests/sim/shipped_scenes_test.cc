@@ -62,7 +62,7 @@ TEST(ShippedScenesTest, StandStillWhileTheArmIsHeld) {
 }
 
 TEST(ShippedScenesTest, KinematicTreesAgreeWithTheEngine) {
-  const Scene scene = ReadScene(SceneFiles().front());
+  const Scene scene = ReadScene(SourceFolder() + "/scenes/power_cylinder.yaml");
   BuildOptions options;
   options.with_demonstrator = true;
   const ModelPtr m = BuildModel(scene, options);
