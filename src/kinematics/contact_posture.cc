@@ -29,12 +29,12 @@ constexpr double kLikeHuman = 4;         // rad, involved fingers
 constexpr double kOpen = 0.5;            // rad, fingers that should be out of the way
 constexpr double kLever = 0.01;          // m, of a joint that could not press
 constexpr double kMinProximalLever = 0.035, kMinDistalLever = 0.018;  // m
-constexpr double kPad = 0.2;     // contact away from the pad's palmar side
-constexpr double kRadial = 0.1;  // rad, lateral: push of the index off its radial axis
-constexpr double kMaxTurningLever = 0.005, kTurningLever = 0.002;  // m
-constexpr double kFist = 1.4;                                      // rad, of both joints
-constexpr double kAcross = 1.5;                                    // rad, of the index's last joint
-constexpr double kTurned = 1.2;  // rad, lateral: where the search for the thumb's turn begins
+constexpr double kPad = 0.2;  // contact away from the pad's palmar side
+// Of lateral grasps: the index's push off its radial axis (rad), the thumb's about its turning
+// joint (m), a fist's joints, the index's last joint, where the search for the thumb's turn begins
+// (rad).
+constexpr double kRadial = 0.1, kMaxTurningLever = 0.005, kTurningLever = 0.002;
+constexpr double kFist = 1.4, kAcross = 1.5, kTurned = 1.2;
 constexpr int kStarts = 5;
 // What presses in a power grasp, m.
 constexpr double kTouching = 0.0025, kPalmTouching = 0.005;
