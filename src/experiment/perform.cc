@@ -305,11 +305,21 @@ class Performer {
     performance_.creep = (watch_.ObjectInHand().translation() - p_HO_quiet).norm() /
                          std::max(0.1, criteria_.hold - quiet);
     performance_.hold = watch_.window().Mean();
+    performance_.weight_error = WeightError(performance_.hold);
     for (int f = 0; f < kNumFingers; ++f) {
       performance_.force_target[f] = force_window_.target[f] / std::max(1, force_window_.count);
       performance_.force_sensed[f] = force_window_.sensed[f] / std::max(1, force_window_.count);
     }
     return true;
+  }
+
+  // Mean contact forces of a hand at rest against the object's true weight, as a fraction of it.
+  double WeightError(const ContactWindow& window) const {
+    Eigen::Vector3d f_H = window.palm_f_H;
+    for (const Eigen::Vector3d& f : window.f_H) f_H += f;
+    const double weight = simulation_.model().body_subtreemass[object_] * kGravity;
+    const Eigen::Vector3d f_W = robot_.HandPose(simulation_).linear() * f_H;
+    return (f_W - Eigen::Vector3d(0, 0, weight)).norm() / weight;
   }
 
   bool Disturb() {

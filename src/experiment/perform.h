@@ -72,6 +72,7 @@ struct Performance {
   ContactWindow grip, hold, after;         // end of grip, last of hold, after the disturbances
   double slip = 0, rotation = 0;           // m, rad: largest in the hand from grip to the end
   double creep = 0;                        // m/s in hold
+  double weight_error = 0;          // of m g: what the contact forces of hold lack to carry it
   double shake_fraction = 0;               // smallest of three axes, achieved over commanded
   double arm_error = 0;                    // m, RMS of the hand frame against plan in the reach
   double finger_error = 0;                 // m, RMS of fingertips against plan in the reach

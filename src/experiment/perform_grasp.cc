@@ -75,6 +75,7 @@ void RecordPerformance(const Performance& p, const std::string& type, const Perf
   }
   if (p.reached > Phase::kHold) {
     v["creep_mm_s"] = 1e3 * p.creep;
+    v["weight_error"] = p.weight_error;
     v["arm_hold_error_mm"] = 1e3 * p.held.position;
     v["arm_hold_error_deg"] = kDegrees * p.held.rotation;
   }

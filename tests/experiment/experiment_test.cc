@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "experiment/small_experiment.h"
 #include "experiment/trial_identity.h"
+#include "grasp/library.h"
 
 namespace springgrasp {
 namespace {
@@ -146,6 +147,43 @@ TEST(ExperimentTest, OpenHandStandsBesideEachTrialWithTheSameDraws) {
   EXPECT_EQ(trials[3].spec.baseline, "open_hand");
   EXPECT_EQ(trials[2].spec.repetition, trials[3].spec.repetition);
   EXPECT_NE(trials[2].id, trials[3].id);
+}
+
+constexpr const char* kFromLibrary =
+    "name: shipped\nseed: 1\ncases:\n  - name: c\n    scene: scene.yaml\n    grasp: pinch\n"
+    "    demonstration: {kind: library}\n";
+
+TEST(ExperimentTest, AGraspOfTheLibraryIsPerformedWithoutSeeingIt) {
+  const TemporaryFolder folder;
+  const auto trials = ExpandExperiment(SmallExperiment(folder, kFromLibrary));
+  ASSERT_EQ(trials.size(), 1u);
+  EXPECT_EQ(trials[0].spec.demonstration, "library");
+  EXPECT_EQ(trials[0].spec.grasp_file, ShippedLibrary() + "/pinch.yaml");
+  const auto seen = ExpandExperiment(
+      SmallExperiment(folder, kFromLibrary, {"cases.0.demonstration.kind=synthesised"}));
+  EXPECT_NE(trials[0].id, seen[0].id);
+  EXPECT_NE(trials[0].group, 0u);
+}
+
+TEST(ExperimentTest, ALibraryThatDoesNotFitIsAnError) {
+  const TemporaryFolder folder;
+  const auto expand = [&](const std::vector<std::string>& overrides) {
+    return ExpandExperiment(SmallExperiment(folder, kFromLibrary, overrides));
+  };
+  EXPECT_THROW(expand({"cases.0.demonstration.file=power.yaml"}), Error);
+  EXPECT_THROW(expand({"cases.0.demonstration.file=none.yaml"}), Error);
+  EXPECT_THROW(expand({"cases.0.until=observe"}), Error);
+  EXPECT_THROW(expand({"baselines=[open_hand]"}), Error);
+  EXPECT_THROW(expand({"baselines=[springs]"}), Error);
+  EXPECT_EQ(expand({"baselines=[playback, interpolation]"}).size(), 3u);
+}
+
+TEST(ExperimentTest, ACaseReplacesStagesBesideTheExperiments) {
+  const TemporaryFolder folder;
+  const auto trials = ExpandExperiment(SmallExperiment(
+      folder, kFromLibrary, {"substitute=[tracks]", "cases.0.substitute=[arm, tracks]"}));
+  EXPECT_EQ(trials[0].spec.substitute, (std::vector<std::string>{"arm", "tracks"}));
+  EXPECT_THROW(SmallExperiment(folder, kFromLibrary, {"cases.0.substitute=[eyes]"}), Error);
 }
 
 TEST(ExperimentTest, RecordsOnePerCaseWhereAsked) {

@@ -31,6 +31,33 @@ TEST(OutcomesTest, ABallIsPinchedHeldAndShaken) {
   ExpectOutcome(Trial(), Outcome::kSuccess, "done");
 }
 
+TEST(OutcomesTest, WhatIsHeldStillIsCarriedByItsContacts) {
+  for (const char* type : {"pinch", "power"}) {
+    const TrialResult result =
+        Trial(type, type == std::string("pinch") ? "pinch_ball" : "power_cylinder").Run();
+    ASSERT_TRUE(result.values.count("weight_error")) << type << ": " << result.message;
+    EXPECT_LT(result.values.at("weight_error"), 0.05) << type;
+  }
+}
+
+TEST(OutcomesTest, ACylinderIsSetDownWhereItShallStand) {
+  Trial trial("power", "power_cylinder");
+  trial.object().place = Eigen::Vector2d(0.33, 0.53);
+  const TrialResult result = trial.Run();
+  EXPECT_EQ(OutcomeName(result.outcome), "success") << result.message;
+  EXPECT_LT(result.values.at("place_error_mm"), 20);
+  EXPECT_LT(result.values.at("place_tilt_deg"), 10);
+}
+
+TEST(OutcomesTest, WhatIsSetDownBeyondTheEdgeFalls) {
+  Trial trial("power", "power_cylinder");
+  trial.object().place = Eigen::Vector2d(0.33, 0.53);
+  // The table ends below the middle of where it shall stand.
+  trial.scene.table.position.y() += 0.545 - (0.66 - 0.25);
+  trial.object().X_WO.translation().y() = 0.58;
+  ExpectOutcome(trial, Outcome::kDroppedPlace, "done");
+}
+
 TEST(OutcomesTest, AnObjectBehindTheTableIsUnreachable) {
   Trial trial;
   trial.object().X_WO.translation().y() += 0.6;
@@ -61,7 +88,7 @@ TEST(OutcomesTest, AHeavySlipperyBallIsNotLifted) {
 TEST(OutcomesTest, WhatCreepsIsDroppedInTheHold) {
   Trial trial;
   trial.scene.physics.cone = "pyramidal";
-  trial.scene.physics.impratio = 1;
+  trial.scene.physics.impratio = 2;
   trial.scene.physics.noslip_iterations = 0;
   trial.scene.max_finger_force = 3;
   trial.options.criteria.hold = 6;

@@ -76,6 +76,18 @@ TEST(PerformGraspTest, APinchHoldsTheForceItChoseAndStaysBelowTheLimit) {
   }
 }
 
+TEST(PerformGraspTest, ExactJointsAreWhereTheyArePlanned) {
+  const Grasp grasp = ReadGrasp(SourceFolder() + "/models/grasps/pinch.yaml");
+  const Scene scene = ReadScene(SourceFolder() + "/scenes/pinch_ball.yaml");
+  PerformGraspOptions options;
+  const TrialResult driven = PerformGrasp(grasp, scene, options);
+  options.exact_arm = options.exact_fingers = true;
+  const TrialResult exact = PerformGrasp(grasp, scene, options);
+  EXPECT_EQ(OutcomeName(exact.outcome), "success") << exact.message;
+  EXPECT_LT(exact.values.at("arm_late_error_mm"), 0.1 * driven.values.at("arm_late_error_mm"));
+  EXPECT_LT(exact.values.at("finger_error_mm"), 0.5 * driven.values.at("finger_error_mm"));
+}
+
 TEST(PerformGraspTest, SensorNoiseFollowsTheActuationStream) {
   const auto run = [](std::uint64_t seed) {
     Trial trial;

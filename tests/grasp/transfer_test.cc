@@ -75,6 +75,7 @@ Grasp KeyGrip() {
   grasp.involved = {true, true, false, false, false};
   grasp.shape = ParseShape("box:0.08x0.06x0.005");
   grasp.tip_radius = 0.008;
+  grasp.X_OH.translation().x() = -0.15;
   grasp.rays[kThumb] = RayOfContact(grasp.shape, {0.008, 0.028, 0.0105});
   grasp.rays[kIndex] = RayOfContact(grasp.shape, {0.002, 0.028, -0.0105});
   return grasp;
@@ -87,7 +88,8 @@ TEST(PlateContactsTest, LieOppositeEachOtherOnTheFacesOffTheEdges) {
     const Vector3d &thumb = contacts[kThumb].p_OC, &index = contacts[kIndex].p_OC;
     EXPECT_NEAR(thumb.z(), plate.size.z() / 2 + 0.009, 1e-12) << text;
     EXPECT_LT((thumb - Vector3d(index.x(), index.y(), -index.z())).norm(), 1e-12) << text;
-    EXPECT_NEAR(thumb.x(), 0.005 / 0.08 * plate.size.x(), 1e-6) << text;
+    // The end of the longest side where the wrist is.
+    EXPECT_NEAR(thumb.x(), 0.015 - plate.size.x() / 2, 1e-12) << text;
     EXPECT_NEAR(thumb.y(), plate.size.y() / 2 - 0.015, 1e-12) << text;
     EXPECT_EQ(contacts[kThumb].n_O, Vector3d(0, 0, 1)) << text;
     EXPECT_EQ(contacts[kIndex].n_O, Vector3d(0, 0, -1)) << text;
@@ -97,6 +99,28 @@ TEST(PlateContactsTest, LieOppositeEachOtherOnTheFacesOffTheEdges) {
       PlateContacts(KeyGrip(), ParseShape("box:0.08x0.02x0.005"), 0.009, 0.015);
   EXPECT_EQ(narrow[kThumb].p_OC.y(), 0);
   EXPECT_THROW(PlateContacts(KeyGrip(), ParseShape("sphere:0.04"), 0.009, 0.015), Error);
+}
+
+TEST(TransferTest, ContactsAndSpringsOfAnotherGraspAreTakenApart) {
+  const Grasp own = EnclosingFromAbove();
+  Grasp other = own;
+  other.rays[kThumb].direction = -own.rays[kThumb].direction;
+  other.X_HG.translation().x() += 0.01;
+  other.kc = 2 * own.kc;
+  other.edges = {{0, 1, 5, 0.1, 0.2, 0}};
+  other.scales.T = 3;
+
+  Grasp contacts = own, springs = own;
+  TakeContacts(other, contacts);
+  TakeSprings(other, springs);
+  EXPECT_EQ(contacts.rays[kThumb].direction, other.rays[kThumb].direction);
+  EXPECT_EQ(contacts.X_HG.translation(), other.X_HG.translation());
+  EXPECT_EQ(contacts.kc, own.kc);
+  EXPECT_EQ(contacts.edges.size(), own.edges.size());
+  EXPECT_EQ(springs.kc, other.kc);
+  EXPECT_EQ(springs.edges.size(), 1u);
+  EXPECT_EQ(springs.rays[kThumb].direction, own.rays[kThumb].direction);
+  EXPECT_EQ(springs.scales.T, own.scales.T);
 }
 
 }  // namespace
