@@ -162,7 +162,10 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
         SolveHandMotionSmoothly(human, TipsOf(motion), {.dt = dt});
     const ContactRequest contacts =
         RequestContacts(human, body.hand, motion, q_human[ContactSample(motion, dt)]);
-    result.posture = SolveHangingPosture(body.hand, contacts, request.object.X_WO);
+    // A key grip holds by a fist, whose palm the index lies against whatever hangs.
+    result.posture = grasp.type == "lateral"
+                         ? SolveContactPosture(body.hand, contacts)
+                         : SolveHangingPosture(body.hand, contacts, request.object.X_WO);
     const Pose X_GH = result.posture.X_HG.inverse();
     const Eigen::VectorXd q_open = HangingPosture(
         DrivesOf(body.hand), body.hand,
@@ -180,11 +183,13 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
       for (const FingertipMotionSample& sample : motion.samples) {
         X_OH.push_back(turned.X_WO.inverse() * sample.X_WG * X_GH);
       }
-      if (grasp.type == "lateral") {
+      const bool edge_on = grasp.type == "lateral";
+      if (edge_on) {
         X_OH = EdgeOnApproach(X_OH, result.posture.X_HG, motion.n_OC[kThumb], dt, motion.T);
       }
-      X_OH =
-          ClearApproach(body.hand, generate.shape, X_OH, q_open, dt, motion.T, kApproachClearance);
+      // Late, only the way along the plate keeps off it.
+      X_OH = ClearApproach(body.hand, generate.shape, X_OH, q_open, dt, motion.T,
+                           kApproachClearance, 0.25, !edge_on);
       for (Pose& X : X_OH) X = turned.X_WO * X;
       return X_OH;
     };
@@ -208,7 +213,14 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     reach.q_start = request.arm_start;
     reach.dt = dt;
     reach.T = motion.T;
-    reach.q_hand = nominal_hand.q;
+    // An object that seats in the palm has to pass the thumb on its way in.
+    const bool power = grasp.type == "power";
+    Eigen::VectorXd q_wait = power ? q_open
+                                   : OpenedPosture(body.hand, result.posture, generate.shape,
+                                                   closing(motion.involved), kWaitClearance);
+    reach.q_hand = CloseAfterArrival(body.hand, nominal_hand, closing(motion.involved), q_wait,
+                                     result.posture.q, dt, motion.T);
+    LetHang(body.hand, nominal, reach.q_hand);
     reach.path = path;
     reach.clear = [&](const Pose& X_OF, const std::vector<Pose>& X_WH) {
       const Pose X_OW = (request.object.X_WO * X_OF).inverse();
@@ -255,11 +267,6 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     plan.T = motion.T;
     plan.X_WH = planned.X_WH;
     plan.arm = Fixed<ArmVector>(planned.arm);
-    // An object that seats in the palm has to pass the thumb on its way in.
-    const bool power = grasp.type == "power";
-    Eigen::VectorXd q_wait = power ? q_open
-                                   : OpenedPosture(body.hand, result.posture, generate.shape,
-                                                   closing(motion.involved), kWaitClearance);
     Eigen::VectorXd q_end = result.posture.q;
     if (request.baseline) {
       hand.q = PlanBaselineHand(*request.baseline, body, human, grasp, motion, result.posture);

@@ -245,7 +245,7 @@ HandMotionResult MapHandMotion(const HumanHand& human, const RobotHand& robot,
 
 std::vector<Pose> ClearApproach(const RobotHand& robot, const Shape& shape,
                                 const std::vector<Pose>& X_OH, const Eigen::VectorXd& q_open,
-                                double dt, double T, double clearance, double closing) {
+                                double dt, double T, double clearance, double closing, bool late) {
   constexpr double kStep = 0.01, kMost = 0.16, kMostLate = 0.06;  // m, offsets
   constexpr double kNearGoal = 0.95, kApproach = 0.2;  // of T, where less clearance is unavoidable
   constexpr int kStride = 3;                           // samples between checks
@@ -280,6 +280,7 @@ std::vector<Pose> ClearApproach(const RobotHand& robot, const Shape& shape,
   };
   const Eigen::Matrix3d R_OA = X_OH[last].linear() * robot.R_HA;
   for (const double peak : peaks) {
+    if (peak == peaks[1] && !late) break;
     const double most = peak == peaks[0] ? kMost : kMostLate;
     Eigen::Vector3d best = Eigen::Vector3d::Zero();
     double least = shortage(best, peak);

@@ -60,11 +60,12 @@ HandMotionResult MapHandMotion(const HumanHand& human, const RobotHand& robot,
 // offsets a * bump(t) along a retreat direction (out of the palm's back, back along the fingers, or
 // between) so that the hand at `q_open` keeps `clearance` before the last `closing` part of T, and
 // from there what it has at the goal and more the farther it is from T. The bumps are 0 at both
-// ends, with zero velocity; the first is largest in the middle of the reach, the second towards its
-// end. Returns the path in O; unchanged where it is clear.
+// ends, with zero velocity; the first is largest in the middle of the reach, the second, if `late`,
+// towards its end. Returns the path in O; unchanged where it is clear.
 std::vector<Pose> ClearApproach(const RobotHand& robot, const Shape& shape,
                                 const std::vector<Pose>& X_OH, const Eigen::VectorXd& q_open,
-                                double dt, double T, double clearance, double closing = 0.25);
+                                double dt, double T, double clearance, double closing = 0.25,
+                                bool late = true);
 
 // A hand path that takes a plate edge on: G comes into the plate's plane, a little towards the
 // fingers' side of it, and the hand turns as it will hold it, within the first part of T; the rest

@@ -211,6 +211,10 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
          HandAboveTable(hand, plan.X_WH[k], q_hand, request.table_height, request.table_edge)});
     plan.self_clearance = std::min(plan.self_clearance, SelfClearanceOf(arm, plan.arm[k], request));
   }
+  if (plan.table_clearance < kLeastClearance) {
+    plan.reason = "the hand would touch the table on its way";
+    return false;
+  }
   for (const Eigen::VectorXd& q : plan.lift) {
     plan.limit_margin = std::min(plan.limit_margin, LimitMargin(arm, q));
   }
