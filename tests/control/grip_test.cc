@@ -93,7 +93,7 @@ TEST(GripTest, KeyGripTorqueIsTheThumbsWorkAlongItsPushAndNobodyElses) {
   const KinematicTree tree = ToyHand();
   const HandVector q = HandVector::LinSpaced(11, -0.2, 0.4);
   const Eigen::Vector3d push = Eigen::Vector3d(0.6, 0, -0.8);
-  const GripTorque grip = KeyGripTorque(tree, {0, 1, 2, 3, 4}, q, push, 4);
+  const GripTorque grip = KeyGripTorque(tree, {0, 1, 2, 3, 4}, BodiesAt(tree, q), push, 4);
   EXPECT_EQ(grip.force[kThumb], 4);
   EXPECT_EQ(grip.force[kIndex], 0);
   const auto along = [&](const HandVector& at) {
