@@ -155,7 +155,7 @@ def draw_bars(conditions, path):
         x = [i + (k - (len(kinds) - 1) / 2) * width for i, _ in chosen]
         y = [c.successes / c.n for _, c in chosen]
         bounds = [wilson(c.successes, c.n) for _, c in chosen]
-        error = [[v - b[0] for v, b in zip(y, bounds)], [b[1] - v for v, b in zip(y, bounds)]]
+        error = [[max(0.0, v - b[0]) for v, b in zip(y, bounds)], [max(0.0, b[1] - v) for v, b in zip(y, bounds)]]
         ax.bar(x, y, 0.92 * width, yerr=error, capsize=3, label="springs" if kind == "none" else kind)
     ax.set_xticks(range(len(names)))
     ax.set_xticklabels([n.replace(" objects.0.shape=", "\n") for n in names],
@@ -182,7 +182,7 @@ def draw_sizes(conditions, path):
         x = [p[0] + 0.25 * (k - len(lines) / 2) for p in points]
         y = [p[1].successes / p[1].n for p in points]
         bounds = [wilson(p[1].successes, p[1].n) for p in points]
-        error = [[v - b[0] for v, b in zip(y, bounds)], [b[1] - v for v, b in zip(y, bounds)]]
+        error = [[max(0.0, v - b[0]) for v, b in zip(y, bounds)], [max(0.0, b[1] - v) for v, b in zip(y, bounds)]]
         ax.errorbar(x, y, yerr=error, marker="o", capsize=3, label=name)
     ax.set_ylim(0, 1.03)
     ax.set_xlabel("smallest width of the object, mm")
