@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "control/grip.h"
 #include "experiment/arm_reference.h"
+#include "experiment/place_held.h"
 #include "experiment/trial_watch.h"
 #include "kinematics/mirror.h"
 #include "motion/minimum_jerk.h"
@@ -382,37 +382,11 @@ class Performer {
     return StillAt((1 - u) * from + u * plan_.released);
   }
 
-  // Fingers that press carry the object off where it was planned to lie in the hand; the joints of
-  // the fingers tell by how much. By this the arm's joints make up for it at the place, rad.
-  ArmVector HeldElsewhere() const {
-    const PerFinger<Eigen::Vector3d> now = TipPositions(hand_, robot_.Read(simulation_).hand_q);
-    const PerFinger<Eigen::Vector3d> planned = TipPositions(hand_, plan_.hand.back());
-    Eigen::Vector3d others = Eigen::Vector3d::Zero();
-    int count = 0;
-    for (int f = kIndex; f < kNumFingers; ++f) {
-      if (!plan_.involved[f]) continue;
-      others += now[f] - planned[f];
-      ++count;
-    }
-    const Eigen::Vector3d moved_H =
-        (now[kThumb] - planned[kThumb] + others / std::max(1, count)) / 2;
-    Pose X_WH = HandPose(arm_, plan_.place.back());
-    X_WH.translation() -= X_WH.linear() * moved_H;
-    const auto q = SolveArmIk(arm_, X_WH, plan_.place.back());
-    return q ? ArmVector(*q - plan_.place.back()) : ArmVector::Zero();
-  }
-
   bool Place() {
     if (plan_.place.empty()) return true;
     Enter(Phase::kPlace);
     const double way = plan_.dt * static_cast<double>(plan_.place.size() - 1);
-    const ArmVector by = HeldElsewhere();
-    std::vector<ArmVector> place = plan_.place, retreat = plan_.retreat;
-    for (std::size_t i = 0; i < place.size(); ++i) {
-      place[i] +=
-          MinimumJerkPosition(static_cast<double>(i) / static_cast<double>(place.size() - 1)) * by;
-    }
-    for (ArmVector& q : retreat) q += by;
+    const auto [place, retreat] = PathsForHeld(arm_, hand_, plan_, robot_.Read(simulation_).hand_q);
     for (long i = 0; i < StepsFor(way); ++i) {
       const double t = static_cast<double>(i) * simulation_.timestep();
       planned_ = plan_.X_WH_place[static_cast<std::size_t>(t / plan_.dt)];
@@ -446,31 +420,14 @@ class Performer {
         return false;
       }
     }
-    JudgePlaced(p_WO_before);
+    const PlacedObject placed = JudgePlaced(watch_.ObjectPose(), plan_.X_WO_place, p_WO_before,
+                                            watch_.window().Mean(), criteria_);
+    performance_.placed = true;
+    performance_.place_error = placed.error;
+    performance_.place_tilt = placed.tilt;
+    if (!placed.fault.empty()) watch_.Record(Outcome::kDroppedPlace, placed.fault);
     Enter(Phase::kDone);
     return true;
-  }
-
-  // `p_WO_before`: where the object was before it had to rest.
-  void JudgePlaced(const Eigen::Vector3d& p_WO_before) {
-    const Pose X_WO = watch_.ObjectPose();
-    performance_.placed = true;
-    performance_.place_error = (X_WO.translation() - plan_.X_WO_place.translation()).norm();
-    performance_.place_tilt = std::acos(
-        std::clamp(X_WO.linear().col(2).dot(plan_.X_WO_place.linear().col(2)), -1.0, 1.0));
-    const double speed = (X_WO.translation() - p_WO_before).norm() / criteria_.rest;
-    const ContactWindow window = watch_.window().Mean();
-    double touched = window.palm_normal;
-    for (const double normal : window.normal) touched += normal;
-    const double tilt_deg = performance_.place_tilt * 180 / std::numbers::pi;
-    if (performance_.place_error > criteria_.max_place_distance ||
-        tilt_deg > criteria_.max_place_tilt_deg || speed > criteria_.max_place_speed ||
-        touched > 0) {
-      watch_.Record(Outcome::kDroppedPlace,
-                    fmt::format("stands {:.0f} mm off and {:.0f} degrees tilted, moves at {:.1f} "
-                                "mm/s, touched with {:.1f} N",
-                                1e3 * performance_.place_error, tilt_deg, 1e3 * speed, touched));
-    }
   }
 
   Simulation& simulation_;
