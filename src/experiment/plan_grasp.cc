@@ -162,10 +162,7 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
         SolveHandMotionSmoothly(human, TipsOf(motion), {.dt = dt});
     const ContactRequest contacts =
         RequestContacts(human, body.hand, motion, q_human[ContactSample(motion, dt)]);
-    // A key grip holds by a fist, whose palm the index lies against whatever hangs.
-    result.posture = grasp.type == "lateral"
-                         ? SolveContactPosture(body.hand, contacts)
-                         : SolveHangingPosture(body.hand, contacts, request.object.X_WO);
+    result.posture = SolveHangingPosture(body.hand, contacts, request.object.X_WO);
     const Pose X_GH = result.posture.X_HG.inverse();
     const Eigen::VectorXd q_open = HangingPosture(
         DrivesOf(body.hand), body.hand,
