@@ -57,6 +57,14 @@ struct ExperimentCase {
   std::string sampling = "random";  // random | sobol: a sequence that fills the space evenly
 };
 
+// What every case is tried under: `set`, `substitute` and `sample` beside the case's own.
+struct ExperimentCondition {
+  std::string name;  // the trials' case is called "CASE, NAME"
+  std::vector<SceneOverride> set;
+  std::vector<std::string> substitute;
+  std::vector<SampledKey> sample;
+};
+
 // The values of one repetition, in the order of c.sample. Sobol: point `repetition` of the
 // sequence, each coordinate turned by an offset of its own (Cranley-Patterson), from seed and key.
 std::vector<double> DrawSample(const ExperimentCase& c, std::uint64_t seed, int repetition);
@@ -72,7 +80,7 @@ struct Experiment {
   std::vector<std::string> substitute;  // in all cases
   TrialCriteria criteria;
   RecordOptions record;
-  std::vector<ExperimentCase> cases;
+  std::vector<ExperimentCase> cases;  // each under each of the conditions
 };
 
 // `path`: a YAML file, or a folder that holds experiment.yaml; where there is none, the same below

@@ -59,6 +59,46 @@ CaseDemonstration ReadCaseDemonstration(YamlReader yaml) {
   return d;
 }
 
+std::vector<SceneOverride> ReadSet(YamlReader yaml) {
+  std::vector<SceneOverride> set;
+  for (const std::string& key : yaml.Keys()) set.emplace_back(key, yaml.Text(key));
+  yaml.Finish();
+  return set;
+}
+
+std::vector<SampledKey> ReadSample(YamlReader yaml) {
+  std::vector<SampledKey> sample;
+  for (const std::string& key : yaml.Keys()) {
+    std::vector<double> bounds;
+    yaml.Read(key, bounds);
+    ThrowUnless(bounds.size() == 2 && bounds[0] <= bounds[1],
+                "{}: {} is drawn between two numbers, expected [low, high]", yaml.Where(key), key);
+    sample.push_back({key, bounds[0], bounds[1]});
+  }
+  yaml.Finish();
+  return sample;
+}
+
+ExperimentCondition ReadCondition(YamlReader& yaml) {
+  ExperimentCondition condition;
+  yaml.Require("name");
+  yaml.Read("name", condition.name);
+  ThrowUnless(!condition.name.empty(), "{}: a condition needs a name", yaml.Where("name"));
+  condition.set = ReadSet(yaml.Child("set"));
+  condition.substitute = ReadSome(yaml, "substitute", kSubstitutes);
+  condition.sample = ReadSample(yaml.Child("sample"));
+  yaml.Finish();
+  return condition;
+}
+
+ExperimentCase Under(const ExperimentCondition& condition, ExperimentCase c) {
+  c.name += ", " + condition.name;
+  c.set.insert(c.set.end(), condition.set.begin(), condition.set.end());
+  c.substitute.insert(c.substitute.end(), condition.substitute.begin(), condition.substitute.end());
+  c.sample.insert(c.sample.end(), condition.sample.begin(), condition.sample.end());
+  return c;
+}
+
 ExperimentCase ReadCase(YamlReader& yaml) {
   ExperimentCase c;
   yaml.Require("name");
@@ -75,9 +115,7 @@ ExperimentCase ReadCase(YamlReader& yaml) {
   yaml.Read("contacts", c.contacts, {"points", "centre"});
   c.substitute = ReadSome(yaml, "substitute", kSubstitutes);
   c.demonstration = ReadCaseDemonstration(yaml.Child("demonstration"));
-  YamlReader set = yaml.Child("set");
-  for (const std::string& key : set.Keys()) c.set.emplace_back(key, set.Text(key));
-  set.Finish();
+  c.set = ReadSet(yaml.Child("set"));
   YamlReader variations = yaml.Child("variations");
   for (const std::string& key : variations.Keys()) {
     std::vector<std::string> values;
@@ -86,16 +124,7 @@ ExperimentCase ReadCase(YamlReader& yaml) {
     c.variations.emplace_back(key, values);
   }
   variations.Finish();
-  YamlReader sample = yaml.Child("sample");
-  for (const std::string& key : sample.Keys()) {
-    std::vector<double> bounds;
-    sample.Read(key, bounds);
-    ThrowUnless(bounds.size() == 2 && bounds[0] <= bounds[1],
-                "{}: {} is drawn between two numbers, expected [low, high]", sample.Where(key),
-                key);
-    c.sample.push_back({key, bounds[0], bounds[1]});
-  }
-  sample.Finish();
+  c.sample = ReadSample(yaml.Child("sample"));
   yaml.Read("sampling", c.sampling, {"random", "sobol"});
   yaml.Finish();
   return c;
@@ -158,11 +187,20 @@ Experiment ParseExperiment(const std::string& text, const std::string& source,
   e.record.trajectories = ReadWhich(record, "trajectories", e.record.trajectories);
   record.Finish();
   yaml.Require("cases");
+  std::vector<ExperimentCondition> conditions;
   std::set<std::string> names;
+  for (YamlReader& child : yaml.Children("conditions")) {
+    conditions.push_back(ReadCondition(child));
+    ThrowUnless(names.insert(conditions.back().name).second, "{}: a second condition is named '{}'",
+                child.Where("name"), conditions.back().name);
+  }
+  names.clear();
   for (YamlReader& child : yaml.Children("cases")) {
-    e.cases.push_back(ReadCase(child));
-    ThrowUnless(names.insert(e.cases.back().name).second, "{}: a second case is named '{}'",
-                child.Where("name"), e.cases.back().name);
+    const ExperimentCase c = ReadCase(child);
+    ThrowUnless(names.insert(c.name).second, "{}: a second case is named '{}'", child.Where("name"),
+                c.name);
+    if (conditions.empty()) e.cases.push_back(c);
+    for (const ExperimentCondition& condition : conditions) e.cases.push_back(Under(condition, c));
   }
   ThrowUnless(!e.cases.empty(), "{}: an experiment needs at least one case", yaml.Where("cases"));
   yaml.Finish();

@@ -78,6 +78,33 @@ TEST(ExperimentTest, VariationsMakeAGrid) {
   EXPECT_DOUBLE_EQ(trials[5].spec.scene.physics.impratio, 10);
 }
 
+TEST(ExperimentTest, EveryCaseIsTriedUnderEveryCondition) {
+  const TemporaryFolder folder;
+  const std::string text =
+      "name: crossed\nseed: 1\nconditions:\n"
+      "  - {name: as it is}\n"
+      "  - {name: heavy, set: {objects.0.mass: 0.4}, substitute: [arm]}\n"
+      "cases:\n"
+      "  - {name: a, scene: scene.yaml, grasp: pinch, set: {objects.0.mass: 0.2}}\n"
+      "  - {name: b, scene: scene.yaml, grasp: pinch, substitute: [contacts]}\n";
+  const auto trials = ExpandExperiment(SmallExperiment(folder, text));
+  ASSERT_EQ(trials.size(), 4u);
+  EXPECT_EQ(trials[0].spec.case_name, "a, as it is");
+  EXPECT_DOUBLE_EQ(trials[0].spec.scene.objects[0].mass, 0.2);
+  EXPECT_EQ(trials[1].spec.case_name, "a, heavy");
+  EXPECT_DOUBLE_EQ(trials[1].spec.scene.objects[0].mass, 0.4);
+  EXPECT_THAT(trials[3].spec.substitute, testing::ElementsAre("arm", "contacts"));
+
+  const auto message = [&](const std::string& replaced, const std::string& by) {
+    std::string bad = text;
+    bad.replace(bad.find(replaced), replaced.size(), by);
+    return MessageOf([&] { SmallExperiment(folder, bad); });
+  };
+  EXPECT_THAT(message("heavy", "as it is"), HasSubstr("a second condition"));
+  EXPECT_THAT(message("name: heavy, ", ""), HasSubstr("name"));
+  EXPECT_THAT(message("[arm]", "[legs]"), HasSubstr("finger_joints"));
+}
+
 constexpr const char* kSampled =
     "name: sampled\nseed: 1\nrepetitions: 200\ncases:\n"
     "  - name: c\n    scene: scene.yaml\n    grasp: pinch\n    sampling: random\n"
