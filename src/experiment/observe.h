@@ -29,7 +29,7 @@ struct ObserveOptions {
 
 // Tracked against shown; lead-in left out.
 struct ObservationErrors {
-  PerFinger<double> median = {}, p95 = {};  // m, of fingertips while visible; 0 if never
+  PerFinger<double> median = {}, p95 = {};  // m, while visible or not known; 0 if never
   PerFinger<int> counted = {};              // samples behind these
   PerFinger<double> coverage = {};          // tracked part of the instants in which it was visible
   PerFinger<double> seen = {};              // tracked part of all instants

@@ -88,6 +88,7 @@ const SeenDemonstration& See(const TrialSpec& spec, const Scene& scene, const st
     ObserveOptions options;
     options.fps = scene.demonstrator.fps;
     options.overlay = overlay;
+    options.measure_visible = false;
     const Observation seen = Observe(scene, engine, options);
     return SeenDemonstration{seen.tracked, seen.truth, seen.shown.involved,
                              Measurements(seen.errors)};

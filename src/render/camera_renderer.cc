@@ -75,6 +75,13 @@ struct CameraRenderer::Impl {
     mjv_freeScene(&scene);
   }
 
+  Pose PoseOf(const mjData& data, const CameraView& view) const {
+    return view.name.empty() ? view.X_WC : CameraPose(model, data, view.name);
+  }
+  double FovyOf(const CameraView& view) const {
+    return view.name.empty() ? view.fovy_deg : CameraFovyDeg(model, view.name);
+  }
+
   // Fills the scene's list of geoms and points both its cameras as `view` says.
   void Update(const mjData& data, const CameraView& view) {
     MakeRenderContextCurrent();
@@ -83,9 +90,8 @@ struct CameraRenderer::Impl {
     mjvCamera any;
     mjv_defaultCamera(&any);
     mjv_updateScene(&model, Mutable(data), &visual, nullptr, &any, mjCAT_ALL, &scene);
-    const bool named = !view.name.empty();
-    const Pose X_WC = named ? CameraPose(model, data, view.name) : view.X_WC;
-    const double fovy = named ? CameraFovyDeg(model, view.name) : view.fovy_deg;
+    const Pose X_WC = PoseOf(data, view);
+    const double fovy = FovyOf(view);
     const double near = model.vis.map.znear * model.stat.extent;
     const double far = model.vis.map.zfar * model.stat.extent;
     const auto top = static_cast<float>(near * std::tan(fovy * M_PI / 360));
@@ -125,32 +131,28 @@ struct CameraRenderer::Impl {
                                    scene.geoms);
   }
 
-  // Pixels that the scene's only geom covers, read from where its bounding sphere may be seen.
-  int CountAlone(const CameraView& view, const mjData& data) {
-    DrawSegments();
-    const mjvGeom& g = scene.geoms[0];
-    const bool named = !view.name.empty();
-    const Pose X_WC = named ? CameraPose(model, data, view.name) : view.X_WC;
-    const double fovy = named ? CameraFovyDeg(model, view.name) : view.fovy_deg;
-    const Eigen::Vector3d p_C = X_WC.inverse() * Eigen::Vector3d(g.pos[0], g.pos[1], g.pos[2]);
+  // Where the bounding sphere of a drawn geom may be seen; rows count from the bottom.
+  cv::Rect BoxOf(const mjvGeom& g, const Pose& X_CW, double fovy_deg) const {
+    const cv::Rect picture(0, 0, options.width, options.height);
+    const Eigen::Vector3d p_C = X_CW * Eigen::Vector3d(g.pos[0], g.pos[1], g.pos[2]);
     const double radius = 1.2 * g.modelrbound;
-    mjrRect box = Viewport();
-    if (g.modelrbound > 0 && p_C.z() > 2 * radius) {
-      const double focal = options.height / (2 * std::tan(fovy * M_PI / 360));
-      // Rows count from the bottom.
-      const double u = options.width / 2.0 + focal * p_C.x() / p_C.z();
-      const double v = options.height / 2.0 - focal * p_C.y() / p_C.z();
-      const double reach = focal * radius / (p_C.z() - radius) + 2;
-      const cv::Rect seen = cv::Rect(cv::Point(cvFloor(u - reach), cvFloor(v - reach)),
-                                     cv::Point(cvCeil(u + reach), cvCeil(v + reach))) &
-                            cv::Rect(0, 0, options.width, options.height);
-      box = {seen.x, seen.y, seen.width, seen.height};
-    }
-    if (box.width <= 0 || box.height <= 0) return 0;
-    mjr_readPixels(rgb.data, nullptr, box, &context);
+    if (g.modelrbound <= 0 || p_C.z() <= 2 * radius) return picture;
+    const double focal = options.height / (2 * std::tan(fovy_deg * M_PI / 360));
+    const double u = options.width / 2.0 + focal * p_C.x() / p_C.z();
+    const double v = options.height / 2.0 - focal * p_C.y() / p_C.z();
+    const double reach = focal * radius / (p_C.z() - radius) + 2;
+    return cv::Rect(cv::Point(cvFloor(u - reach), cvFloor(v - reach)),
+                    cv::Point(cvCeil(u + reach), cvCeil(v + reach))) &
+           picture;
+  }
+
+  // Pixels of the picture just drawn that are not black.
+  int CountDrawn(const cv::Rect& box) {
+    if (box.empty()) return 0;
+    mjr_readPixels(rgb.data, nullptr, {box.x, box.y, box.width, box.height}, &context);
     const unsigned char* pixel = rgb.data;
     int count = 0;
-    for (int i = 0; i < box.width * box.height; ++i, pixel += 3) {
+    for (int i = 0; i < box.area(); ++i, pixel += 3) {
       count += (pixel[0] | pixel[1] | pixel[2]) != 0;
     }
     return count;
@@ -259,15 +261,36 @@ std::vector<CameraRenderer::Visibility> CameraRenderer::CountVisible(
   for (std::size_t i = 0; i < geoms.size(); ++i) {
     counts[i].visible = cv::countNonZero(seen == geoms[i]);
   }
-  // Alone: the same list cut down to one geom.
+  // Alone: the same list cut down to geoms that do not cover each other.
+  const Pose X_CW = impl_->PoseOf(data, view).inverse();
+  const double fovy = impl_->FovyOf(view);
   mjvScene& scene = impl_->scene;
-  const std::vector<mjvGeom> all(scene.geoms, scene.geoms + scene.ngeom);
+  std::vector<std::pair<mjvGeom, std::size_t>> left;  // with the index of its count
   for (std::size_t i = 0; i < geoms.size(); ++i) {
-    scene.ngeom = 0;
-    for (const mjvGeom& g : all) {
-      if (g.objtype == mjOBJ_GEOM && g.objid == geoms[i]) scene.geoms[scene.ngeom++] = g;
+    for (int k = 0; k < scene.ngeom; ++k) {
+      const mjvGeom& g = scene.geoms[k];
+      if (g.objtype == mjOBJ_GEOM && g.objid == geoms[i]) left.emplace_back(g, i);
     }
-    if (scene.ngeom > 0) counts[i].unoccluded = impl_->CountAlone(view, data);
+  }
+  while (!left.empty()) {
+    std::vector<std::pair<cv::Rect, std::size_t>> drawn;
+    std::vector<std::pair<mjvGeom, std::size_t>> later;
+    scene.ngeom = 0;
+    for (const auto& [g, i] : left) {
+      const cv::Rect box = impl_->BoxOf(g, X_CW, fovy);
+      const bool alone = std::all_of(drawn.begin(), drawn.end(), [&](const auto& other) {
+        return (other.first & box).empty();
+      });
+      if (!alone) {
+        later.emplace_back(g, i);
+        continue;
+      }
+      scene.geoms[scene.ngeom++] = g;
+      drawn.emplace_back(box, i);
+    }
+    impl_->DrawSegments();
+    for (const auto& [box, i] : drawn) counts[i].unoccluded = impl_->CountDrawn(box);
+    left = std::move(later);
   }
   return counts;
 }
