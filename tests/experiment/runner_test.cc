@@ -6,54 +6,17 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cmath>
-#include <limits>
 #include <thread>
 
 #include "base/error.h"
-#include "base/files.h"
-#include "experiment/export.h"
+#include "experiment/fake_run.h"
 #include "experiment/result_codec.h"
-#include "experiment/small_experiment.h"
 
 namespace springgrasp {
 namespace {
 
 using testing::HasSubstr;
 namespace fs = std::filesystem;
-
-// Depends on the trial alone, not on time or process.
-TrialResult FakeTrial(const TrialSpec& spec, const TrialOutput& output) {
-  TrialResult result;
-  result.outcome = spec.repetition % 2 == 0 ? Outcome::kSuccess : Outcome::kMissed;
-  result.phase = "done";
-  result.message = spec.repetition % 2 == 0 ? "" : "index, \"the finger\",\nhas no contact";
-  result.values["slip_mm"] = std::sqrt(spec.scene.objects[0].mass + spec.repetition);
-  if (spec.repetition == 2) result.values["rare"] = -std::numeric_limits<double>::infinity();
-  result.values["never"] = std::nan("");
-  result.wall_s["perform"] = 1.25;
-  if (!output.folder.empty()) WriteFileAtomically(output.folder + "/trajectory.csv", "t\n");
-  return result;
-}
-
-TrialResult SlowTrial(const TrialSpec& spec, const TrialOutput& output) {
-  std::this_thread::sleep_for(std::chrono::milliseconds(15));
-  return FakeTrial(spec, output);
-}
-
-ResultStore OpenStore(const Experiment& experiment, const std::string& directory) {
-  return ResultStore::OpenForRun(directory, DescribeRun(experiment, ExpandExperiment(experiment)));
-}
-
-RunEnd RunInto(const Experiment& experiment, const std::string& directory, RunOptions options = {},
-               const TrialFunction& trial = FakeTrial) {
-  ResultStore store = OpenStore(experiment, directory);
-  return RunTrials(ExpandExperiment(experiment), store, trial, options);
-}
-
-std::string Exported(const std::string& directory) {
-  return ExportCsv(ResultStore::OpenForReading(directory).Trials(), false);
-}
 
 TEST(RunnerTest, ExportIsTheSameWhateverTheJobs) {
   const TemporaryFolder folder;
@@ -151,59 +114,6 @@ TEST(RunnerTest, RecordedFilesAppearUnderTheTrialsIdentity) {
   }
   const auto trials = ExpandExperiment(experiment);
   EXPECT_EQ(names, (std::set<std::string>{trials[0].id, trials[5].id}));
-}
-
-TEST(StoreTest, RefusesAnotherExperimentAndLeavesItAlone) {
-  const TemporaryFolder folder;
-  RunInto(SmallExperiment(folder), folder / "out");
-  const std::string before = ReadFile(folder / "out/results.sqlite");
-  EXPECT_THROW(OpenStore(SmallExperiment(folder, kSmallExperiment, {"seed=8"}), folder / "out"),
-               ForeignDirectory);
-  Experiment changed = SmallExperiment(folder);
-  folder.Write("scene.yaml", std::string(kSmallScene) + "max_finger_force: 3\n");
-  EXPECT_THROW(OpenStore(changed, folder / "out"), ForeignDirectory);
-  EXPECT_EQ(ReadFile(folder / "out/results.sqlite"), before);
-}
-
-TEST(StoreTest, RefusesAnotherBehaviourVersion) {
-  const TemporaryFolder folder;
-  const Experiment experiment = SmallExperiment(folder);
-  RunInto(experiment, folder / "out");
-  Database(folder / "out/results.sqlite", Database::Mode::kCreate)
-      .Execute("UPDATE meta SET value = '0' WHERE key = 'behaviour_version'");
-  EXPECT_THROW(OpenStore(experiment, folder / "out"), ForeignDirectory);
-}
-
-TEST(StoreTest, RefusesFoldersThatAreNotItsOwn) {
-  const TemporaryFolder folder;
-  const Experiment experiment = SmallExperiment(folder);
-  fs::create_directory(folder / "full");
-  folder.Write("full/letter.txt", "dear reader");
-  EXPECT_THROW(OpenStore(experiment, folder / "full"), Error);
-  EXPECT_THROW(OpenStore(experiment, folder.Write("file", "")), Error);
-  EXPECT_THROW(ResultStore::OpenForReading(folder / "full"), Error);
-  RunInto(experiment, folder / "cut");
-  fs::resize_file(folder / "cut/results.sqlite", 3000);
-  EXPECT_THROW(RunInto(experiment, folder / "cut"), Error);
-  EXPECT_EQ(fs::file_size(folder / "cut/results.sqlite"), 3000u);
-}
-
-TEST(StoreTest, KeepsOneRunAtATime) {
-  const TemporaryFolder folder;
-  const Experiment experiment = SmallExperiment(folder);
-  const ResultStore first = OpenStore(experiment, folder / "out");
-  const pid_t other = fork();
-  if (other == 0) {
-    try {
-      OpenStore(experiment, folder / "out");
-    } catch (const Error& e) {
-      _exit(std::string(e.what()).find("another run") == std::string::npos ? 2 : 1);
-    }
-    _exit(0);
-  }
-  int status = 0;
-  waitpid(other, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 1);
 }
 
 TEST(ResultCodecTest, IsExactAndRefusesWhatIsCutShort) {
