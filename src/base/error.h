@@ -17,6 +17,13 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// A file could not be written: the disk is full, the folder shut. Not the fault of what was to be
+// written, which may be tried again.
+class NotWritten : public Error {
+ public:
+  using Error::Error;
+};
+
 // Throws Error with a formatted message.
 template <typename... Args>
 [[noreturn]] void Fail(fmt::format_string<Args...> format, Args&&... args) {

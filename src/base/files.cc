@@ -38,7 +38,7 @@ void WriteThroughTemporary(const std::string& path,
     fs::rename(temporary, target);
   } catch (const fs::filesystem_error& e) {
     fs::remove(temporary, ignored);
-    Fail("{}: cannot be written ({})", path, e.code().message());
+    throw NotWritten(fmt::format("{}: cannot be written ({})", path, e.code().message()));
   } catch (...) {
     fs::remove(temporary, ignored);
     throw;
@@ -50,7 +50,7 @@ void WriteFileAtomically(const std::string& path, std::string_view content) {
     std::ofstream out(temporary, std::ios::binary);
     out.write(content.data(), static_cast<std::streamsize>(content.size()));
     out.close();
-    ThrowUnless(out.good(), "{}: cannot be written", path);
+    if (!out.good()) throw NotWritten(fmt::format("{}: cannot be written", path));
   });
 }
 

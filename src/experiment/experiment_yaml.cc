@@ -92,7 +92,7 @@ ExperimentCondition ReadCondition(YamlReader& yaml) {
 }
 
 ExperimentCase Under(const ExperimentCondition& condition, ExperimentCase c) {
-  c.name += ", " + condition.name;
+  c.name = fmt::format("{}, {}", c.name, condition.name);
   c.set.insert(c.set.end(), condition.set.begin(), condition.set.end());
   c.substitute.insert(c.substitute.end(), condition.substitute.begin(), condition.substitute.end());
   c.sample.insert(c.sample.end(), condition.sample.begin(), condition.sample.end());

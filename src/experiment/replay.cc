@@ -69,7 +69,9 @@ PlannedTrial PlanAgain(ResultStore& store, const StoredTrial& stored) {
 
 TrialResult RunAgain(const PlannedTrial& planned, const TrialFunction& run_trial,
                      const TrialOutput& output) {
-  return ResultOrError([&] { return run_trial(planned.spec, output); });
+  TrialResult result = ResultOrError([&] { return run_trial(planned.spec, output); });
+  if (result.not_written) throw NotWritten(result.message);
+  return result;
 }
 
 std::vector<std::string> Differences(const TrialResult& stored, const TrialResult& now) {

@@ -65,6 +65,7 @@ std::string EncodeResult(const TrialResult& result) {
   PutText(bytes, result.phase);
   PutMap(bytes, result.values);
   PutMap(bytes, result.wall_s);
+  Put(bytes, result.not_written);
   return bytes;
 }
 
@@ -77,6 +78,7 @@ TrialResult DecodeResult(std::string_view bytes) {
   result.phase = GetText(bytes);
   result.values = GetMap(bytes);
   result.wall_s = GetMap(bytes);
+  result.not_written = Get<bool>(bytes);
   ThrowUnless(bytes.empty(), "a worker's result has {} bytes too many", bytes.size());
   return result;
 }

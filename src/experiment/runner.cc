@@ -35,14 +35,19 @@ TrialResult RunAndRecord(const PlannedTrial& trial, const std::string& directory
                          const TrialFunction& run_trial) {
   if (!Records(trial.output)) return run_trial(trial.spec, {});
   const fs::path temporary = TemporaryFolder(directory, trial.id);
-  fs::remove_all(temporary);
-  fs::create_directories(temporary);
-  TrialOutput output = trial.output;
-  output.folder = temporary;
-  TrialResult result = run_trial(trial.spec, output);
-  fs::remove_all(FinalFolder(directory, trial.id));
-  fs::rename(temporary, FinalFolder(directory, trial.id));
-  return result;
+  try {
+    fs::remove_all(temporary);
+    fs::create_directories(temporary);
+    TrialOutput output = trial.output;
+    output.folder = temporary;
+    TrialResult result = run_trial(trial.spec, output);
+    fs::remove_all(FinalFolder(directory, trial.id));
+    fs::rename(temporary, FinalFolder(directory, trial.id));
+    return result;
+  } catch (const fs::filesystem_error& e) {
+    throw NotWritten(
+        fmt::format("{}: cannot be written ({})", e.path1().string(), e.code().message()));
+  }
 }
 
 std::string Label(const TrialSpec& spec) {
@@ -151,6 +156,7 @@ class Run {
   void Store(const PlannedTrial& trial, const TrialResult& result) {
     std::error_code ignored;
     fs::remove_all(TemporaryFolder(store_.directory(), trial.id), ignored);
+    if (result.not_written) throw NotWritten(result.message);
     store_.Add(trial.id, result);
     ++progress_.done;
     ++progress_.now;

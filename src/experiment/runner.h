@@ -34,7 +34,8 @@ enum class RunEnd { kComplete, kStoppedEarly };
 
 // Runs the trials that `store` has no result of. A trial that throws, or whose worker dies, gets
 // the outcome `error` with the reason. Recorded files go to <directory>/trials/<id>/, what workers
-// print to <directory>/workers.log. The caller must not have made a render context.
+// print to <directory>/workers.log. Throws NotWritten if files cannot be written; what is done
+// stays, and the next call goes on. The caller must not have made a render context.
 RunEnd RunTrials(const std::vector<PlannedTrial>& trials, ResultStore& store,
                  const TrialFunction& run_trial, const RunOptions& options);
 

@@ -68,6 +68,9 @@ TrialResult ResultOrError(const std::function<TrialResult()>& run) {
   TrialResult result;
   try {
     result = run();
+  } catch (const NotWritten& e) {
+    result.not_written = true;
+    result.message = e.what();
   } catch (const std::exception& e) {
     result.outcome = Outcome::kError;
     result.message = e.what();

@@ -11,7 +11,8 @@
 
 namespace springgrasp {
 
-// What `run` returns; what it throws becomes the outcome `error`. The message is one line.
+// What `run` returns; what it throws becomes the outcome `error`, NotWritten a result that is none.
+// The message is one line.
 TrialResult ResultOrError(const std::function<TrialResult()>& run);
 
 class Worker {

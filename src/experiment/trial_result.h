@@ -42,9 +42,11 @@ struct TrialResult {
   // tracking_median_mm, tracking_95_mm, coverage, wrist_error_mm, wrist_error_deg,
   // reproduction_<finger>_mm, condition_number, k_<i><j>, k_se_<i><j>, mapping_error_mm,
   // arm_error_mm, finger_error_mm, normal_<finger>_n, palm_normal_n, slip_mm, rotation_deg,
-  // creep_mm_s, epsilon, volume, opposition_deg, shake_fraction, object_x, object_y, ...
+  // creep_mm_s, epsilon, volume, opposition_deg, grip_epsilon, shake_fraction, object_x, object_y, ...
   std::map<std::string, double> values;
   std::map<std::string, double> wall_s;  // seconds per stage; kept in a table of their own
+  // Files of the trial could not be written (message: which): no outcome, to be run again.
+  bool not_written = false;
 };
 
 }  // namespace springgrasp

@@ -63,9 +63,16 @@ void VideoWriter::Add(const cv::Mat& bgr) {
 void VideoWriter::Finish() {
   ThrowUnless(impl_->frames > 0, "{}: a video without frames", impl_->path);
   impl_->writer.release();
+  // The encoder does not tell of a full disk.
+  const cv::VideoCapture written(impl_->temporary, cv::CAP_FFMPEG);
   std::error_code error;
-  fs::rename(impl_->temporary, impl_->path, error);
-  ThrowUnless(!error, "{}: cannot be written ({})", impl_->path, error.message());
+  if (!written.isOpened() || written.get(cv::CAP_PROP_FRAME_COUNT) != impl_->frames) {
+    error = std::make_error_code(std::errc::io_error);
+  } else {
+    fs::rename(impl_->temporary, impl_->path, error);
+  }
+  if (error)
+    throw NotWritten(fmt::format("{}: cannot be written ({})", impl_->path, error.message()));
 }
 
 int VideoWriter::frames() const { return impl_->frames; }
@@ -89,9 +96,9 @@ void WriteImage(const std::string& path, const cv::Mat& bgr) {
     try {
       written = cv::imwrite(temporary, bgr);
     } catch (const cv::Exception& e) {
-      Fail("{}: the picture cannot be written ({})", path, e.err);
+      throw NotWritten(fmt::format("{}: the picture cannot be written ({})", path, e.err));
     }
-    ThrowUnless(written, "{}: the picture cannot be written", path);
+    if (!written) throw NotWritten(fmt::format("{}: the picture cannot be written", path));
   });
 }
 

@@ -102,6 +102,26 @@ TEST(RunnerTest, FailingAndDyingTrialsAreRows) {
   }
 }
 
+TEST(RunnerTest, ATrialWhoseFilesCannotBeWrittenIsNoRowAndRunsAgain) {
+  const TemporaryFolder folder;
+  const Experiment experiment =
+      SmallExperiment(folder, kSmallExperiment, {"record={trajectories: all}"});
+  const auto full = [](const TrialSpec& spec, const TrialOutput& output) {
+    if (spec.repetition == 3) throw NotWritten("trajectory.csv: no room");
+    return FakeTrial(spec, output);
+  };
+  try {
+    RunInto(experiment, folder / "out", {}, full);
+    FAIL() << "went on without the file";
+  } catch (const NotWritten& e) {
+    EXPECT_STREQ(e.what(), "trajectory.csv: no room");
+  }
+  EXPECT_EQ(ResultStore::OpenForReading(folder / "out").FinishedIds().size(), 6u);
+  EXPECT_EQ(RunInto(experiment, folder / "out"), RunEnd::kComplete);
+  RunInto(experiment, folder / "whole");
+  EXPECT_EQ(Exported(folder / "out"), Exported(folder / "whole"));
+}
+
 TEST(RunnerTest, RecordedFilesAppearUnderTheTrialsIdentity) {
   const TemporaryFolder folder;
   const Experiment experiment =
