@@ -8,6 +8,7 @@ ContactAccumulator::ContactAccumulator(const std::vector<GeomRole>& roles, int o
 void ContactAccumulator::Add(const std::vector<ContactPoint>& contacts, const Pose& X_WO_com,
                              const Pose& X_WH, double torsion, double dt) {
   sum_.duration += dt;
+  sum_.R_WO = X_WO_com.linear();
   for (const ContactPoint& c : contacts) {
     const bool is_second = c.body2 == body_;
     if (!is_second && c.body1 != body_) continue;

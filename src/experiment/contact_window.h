@@ -29,6 +29,7 @@ struct ContactWindow {
   double total_normal = 0;    // N, all hand-object contacts
   double support_normal = 0;  // N, table, ring and floor on the object
   std::vector<MeanContact> contacts;
+  Eigen::Matrix3d R_WO = Eigen::Matrix3d::Identity();  // at the window's end
   ContactWindow() { f_H.fill(Eigen::Vector3d::Zero()); }
 
   double LoadShare(int finger) const {

@@ -30,7 +30,8 @@ std::FILE* DevNull() {
 }  // namespace
 
 GraspQuality6d EvaluateGraspQuality(const std::vector<QualityContact>& contacts,
-                                    double object_radius) {
+                                    double object_radius,
+                                    const std::vector<Eigen::Matrix<double, 6, 1>>& tasks) {
   GraspQuality6d quality;
   if (contacts.size() < 2) return quality;
   std::vector<double> points;
@@ -56,11 +57,20 @@ GraspQuality6d EvaluateGraspQuality(const std::vector<QualityContact>& contacts,
     qh_getarea(&qhull, qhull.facet_list);
     quality.volume = qhull.totvol;
     quality.epsilon = 1e300;
+    std::vector<double> reach(tasks.size(), 1e300);
     for (const facetT* facet = qhull.facet_list; facet != nullptr && facet->next != nullptr;
          facet = facet->next) {
       // Outward unit normal and offset: the origin lies -offset below the facet's plane.
       quality.epsilon = std::min(quality.epsilon, -facet->offset);
+      const Eigen::Map<const Eigen::Matrix<double, 6, 1>> normal(facet->normal);
+      for (std::size_t i = 0; i < tasks.size(); ++i) {
+        const double along = -normal.dot(tasks[i]);
+        // With the origin outside, whatever lies beyond it is no way of withstanding.
+        if (along > 1e-12) reach[i] = std::min(reach[i], -facet->offset / along);
+      }
     }
+    if (!tasks.empty()) quality.task = *std::min_element(reach.begin(), reach.end());
+    if (quality.epsilon <= 0) quality.task = std::min(quality.task, 0.0);
   }
   qh_freeqhull(&qhull, True);
   int current = 0, total = 0;

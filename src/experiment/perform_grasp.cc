@@ -47,6 +47,15 @@ void RecordPerformance(const Performance& p, const std::string& type, const Perf
     v["arm_late_error_deg"] = kDegrees * p.late_reach.rotation;
     v["finger_error_mm"] = 1e3 * p.finger_error;
   }
+  if (p.grip.duration > 0) {
+    const ContactCheck closed = CheckContacts(type, p.grip, options.shape, options.criteria);
+    v["grip_epsilon"] = closed.epsilon;
+    v["grip_volume"] = closed.volume;
+    v["grip_task"] = closed.task;
+    double least = 1e9;  // of thumb and index, which all types need
+    for (const int f : {kThumb, kIndex}) least = std::min(least, p.grip.normal[f]);
+    v["grip_least_normal_n"] = least;
+  }
   const ContactWindow& window = p.reached > Phase::kDisturb ? p.after
                                 : p.reached > Phase::kHold  ? p.hold
                                                             : p.grip;

@@ -21,6 +21,23 @@ double Opposition(const ContactWindow& w, bool with_palm) {
   return AngleDeg(w.f_H[kThumb], others);
 }
 
+// Weight together with each of the forces of `disturb`.
+std::vector<Eigen::Matrix<double, 6, 1>> DisturbedWeights(const Eigen::Matrix3d& R_WO,
+                                                          const TrialCriteria& criteria) {
+  constexpr double kGravity = 9.81;
+  std::vector<Eigen::Matrix<double, 6, 1>> tasks;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      const Eigen::Vector3d f_W = sign * criteria.force_per_mass * Eigen::Vector3d::Unit(axis) -
+                                  kGravity * Eigen::Vector3d::UnitZ();
+      if (f_W.norm() < 1) continue;  // it bears the weight
+      tasks.push_back(Eigen::Matrix<double, 6, 1>::Zero());
+      tasks.back().head<3>() = R_WO.transpose() * f_W.normalized();
+    }
+  }
+  return tasks;
+}
+
 }  // namespace
 
 bool IsOpposed(const ContactWindow& window, const TrialCriteria& criteria) {
@@ -93,9 +110,11 @@ ContactCheck CheckContacts(const std::string& type, const ContactWindow& w, cons
     const bool is_counted = c.role.part == GeomPart::kPalm ? power : counted[c.role.finger];
     if (is_counted) contacts.push_back(c.geometry);
   }
-  const GraspQuality6d quality = EvaluateGraspQuality(contacts, shape.size.maxCoeff() / 2);
+  const GraspQuality6d quality =
+      EvaluateGraspQuality(contacts, shape.size.maxCoeff() / 2, DisturbedWeights(w.R_WO, criteria));
   check.epsilon = quality.epsilon;
   check.volume = quality.volume;
+  check.task = quality.task;
   if (check.reason.empty() && check.opposition_deg < criteria.min_opposition_deg) {
     check.reason =
         fmt::format("thumb and fingers are opposed by {:.0f} degrees only", check.opposition_deg);

@@ -18,6 +18,7 @@ struct ContactCheck {
   double opposition_deg = 0;  // angle between the thumb's force and the other fingers'
   double epsilon = 0;         // of the counted contacts alone
   double volume = 0;
+  double task = 0;  // against weight and disturbing forces, as GraspQuality6d::task
 };
 ContactCheck CheckContacts(const std::string& type, const ContactWindow& window, const Shape& shape,
                            const TrialCriteria& criteria);

@@ -43,6 +43,29 @@ TEST(GraspQualityTest, MoreFrictionIsNeverWorse) {
   }
 }
 
+TEST(GraspQualityTest, ATaskIsWithstoodByFrictionAcrossTheLineAndByNothingBesideIt) {
+  Eigen::Matrix<double, 6, 1> weight = Eigen::Matrix<double, 6, 1>::Zero();
+  weight[2] = -1;
+  for (const double friction : {0.3, 0.9}) {
+    EXPECT_NEAR(EvaluateGraspQuality(Opposed(friction, 0.005), 0.02, {weight}).task, friction,
+                1e-9);
+  }
+  std::vector<QualityContact> same_side = Opposed(0.9, 0.005);
+  same_side[1].p = Eigen::Vector3d(-0.02, 0.01, 0);
+  same_side[1].n = Eigen::Vector3d::UnitX();
+  EXPECT_LE(EvaluateGraspQuality(same_side, 0.02, {weight}).task, 0);
+}
+
+TEST(GraspQualityTest, TheWorstOfTheTasksCounts) {
+  Eigen::Matrix<double, 6, 1> weight = Eigen::Matrix<double, 6, 1>::Zero(), turn = weight;
+  weight[2] = -1;
+  turn[3] = 1;  // about the line between the fingers: torsion alone withstands it
+  const std::vector<QualityContact> contacts = Opposed(0.9, 0.005);
+  EXPECT_NEAR(EvaluateGraspQuality(contacts, 0.02, {weight, turn}).task,
+              EvaluateGraspQuality(contacts, 0.02, {turn}).task, 1e-12);
+  EXPECT_NEAR(EvaluateGraspQuality(contacts, 0.02, {turn}).task, 0.005 / 0.02, 1e-9);
+}
+
 TEST(GraspQualityTest, OneContactDoesNotClose) {
   EXPECT_EQ(EvaluateGraspQuality({QualityContact()}, 0.02).epsilon, 0);
 }
