@@ -70,8 +70,11 @@ ValveVector GripController::Control(const RobotState& state, const HandTarget& r
       }
     }
   }
-  return ControlHand(model_, pressing_ ? StiffHold(target.sensing_delay) : settings_.moving, target,
-                     state, dt, memory_);
+  if (!pressing_) return ControlHand(model_, settings_.moving, target, state, dt, memory_);
+  PneumaticGains gains = StiffHold(target.sensing_delay);
+  // Fingers that yield to the object settle on it the sooner the less they are damped.
+  if (task_.enclosing) gains.damping = settings_.moving.damping;
+  return ControlHand(model_, gains, target, state, dt, memory_);
 }
 
 // Fingers that did not touch where they were planned to go on, as long as the plan moves none of
