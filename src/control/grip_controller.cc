@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace springgrasp {
+namespace {
+
+constexpr double kLeastForce = 0.5;  // N, pressed with whatever the valves can give
+
+}  // namespace
 
 GripController::GripController(const PneumaticHandModel& model, const KinematicTree& hand,
                                const PerFinger<int>& tip_frames, const GripTask& task,
@@ -39,12 +44,10 @@ ValveVector GripController::Control(const RobotState& state, const HandTarget& r
     if (all || waited_ > settings_.patience) {
       pressing_ = true;
       reference_ = state.hand_q;
+      if (!task_.enclosing) bearable_ = BearableForce(state);
       // What wound up on the way is not wanted.
-      for (int f = 0; f < kNumFingers; ++f) {
-        if (!Presses(f)) continue;
-        for (const int j : {1 + 2 * f, 2 + 2 * f}) {
-          memory_.integral[model_.layout.valve_of_joint[j]] = 0;
-        }
+      for (int j = 0; j < model_.layout.num_joints(); ++j) {
+        if (Grips(j)) memory_.integral[model_.layout.valve_of_joint[j]] = 0;
       }
     } else {
       CloseOn(reference, true, dt);
@@ -67,8 +70,11 @@ ValveVector GripController::Control(const RobotState& state, const HandTarget& r
       }
     }
   }
-  return ControlHand(model_, held_ ? settings_.holding : settings_.moving, target, state, dt,
-                     memory_);
+  if (!pressing_) return ControlHand(model_, settings_.moving, target, state, dt, memory_);
+  PneumaticGains gains = StiffHold(target.sensing_delay);
+  // Fingers that yield to the object settle on it the sooner the less they are damped.
+  if (task_.enclosing) gains.damping = settings_.moving.damping;
+  return ControlHand(model_, gains, target, state, dt, memory_);
 }
 
 // Fingers that did not touch where they were planned to go on, as long as the plan moves none of
@@ -88,10 +94,10 @@ void GripController::Press(const RobotState& state, double dt, HandTarget& targe
   pressed_ += dt;
   const double ramp = std::min(1.0, pressed_ / settings_.ramp);
   const double ease = std::max(0.01, 1 - eased_ / settings_.ease);
-  const double force = ease * ramp * std::min(task_.max_force, force_scale_ * task_.force);
+  const double force =
+      ease * ramp * std::min({task_.max_force, bearable_, force_scale_ * task_.force});
   if (!held_ && pressed_ > settings_.ramp + settings_.settle) {
     held_ = true;
-    reference_ = state.hand_q;
     aperture_ = Aperture();
   }
   if (held_ && eased_ == 0) WatchSlip(state, dt);
@@ -117,34 +123,49 @@ void GripController::Press(const RobotState& state, double dt, HandTarget& targe
           share_[f] + settings_.force_integral * (even - sensed[f]) / force * opposed * dt,
           1 - settings_.max_correction, 1 + settings_.max_correction);
     }
-    grip = task_.push_H
-               ? KeyGripTorque(hand_, tip_frames_, X_HB_, *task_.push_H, force + correction_)
-               : FingertipGripTorque(hand_, tip_frames_, X_HB_,
-                                     {task_.involved, force + correction_, share_});
+    grip = TorqueOf(force + correction_);
     for (double& n : grip.force) n *= force / (force + correction_);
-    // Along these the force decides, the posture in all others.
-    const HandDirections closing = ClosingDirections(hand_, tip_frames_, X_HB_, task_.involved);
-    for (int k = 0; k < closing.cols(); ++k) {
-      posture -= closing.col(k).dot(posture) * closing.col(k);
+    if (!task_.push_H) {
+      // Along these the force decides, the posture in all others.
+      const HandDirections closing = ClosingDirections(hand_, tip_frames_, X_HB_, task_.involved);
+      for (int k = 0; k < closing.cols(); ++k) {
+        posture -= closing.col(k).dot(posture) * closing.col(k);
+      }
     }
-    if (task_.push_H) posture.setZero();
   }
   target_force_ = grip.force;
   target.torque = grip.torque;
   target.offset = sense_.offset;  // what the model errs by, known from the free hand
-  target.integrate = held_;
-  for (int f = 0; f < kNumFingers; ++f) {
-    if (!Presses(f)) continue;
-    for (const int j : {1 + 2 * f, 2 + 2 * f}) {
-      target.pressing[model_.layout.valve_of_joint[j]] = true;
-      // Enclosing fingers yield to the object's shape: no stiffness about any posture.
-      target.q[j] = state.hand_q[j] + (task_.enclosing ? 0 : posture[j]);
-    }
+  for (int j = 0; j < model_.layout.num_joints(); ++j) {
+    if (!Grips(j)) continue;
+    target.pressing[model_.layout.valve_of_joint[j]] = true;
+    // Fingers that enclose yield to the object's shape, the thumb of a key grip bends as its one
+    // valve makes it: no stiffness about any posture.
+    const bool yields = (task_.enclosing || task_.push_H) && IsFingerJoint(j);
+    target.q[j] = state.hand_q[j] + (yields ? 0 : posture[j]);
   }
-  if (task_.enclosing) {
-    target.pressing[model_.layout.valve_of_joint[0]] = true;
-    target.q[0] = reference_[0];
+}
+
+GripTorque GripController::TorqueOf(double force) const {
+  return task_.push_H
+             ? KeyGripTorque(hand_, tip_frames_, X_HB_, *task_.push_H, force)
+             : FingertipGripTorque(hand_, tip_frames_, X_HB_, {task_.involved, force, share_});
+}
+
+// What the valves can give at this posture, less what the force's controller may add.
+double GripController::BearableForce(const RobotState& state) const {
+  const ValveVector q = MeanOfValves(model_.layout, state.hand_q);
+  const ValveVector per_newton = MeanOfValves(model_.layout, TorqueOf(1).torque);
+  ValveVector most = kMaxPressureBar * model_.torque_per_bar - sense_.offset -
+                     model_.return_stiffness.cwiseProduct(q - model_.return_rest);
+  if (state.hand_bias.size() > 0) {
+    most -= model_.gravity * MeanOfValves(model_.layout, state.hand_bias);
   }
+  double force = task_.max_force;
+  for (int v = 0; v < kNumValves; ++v) {
+    if (per_newton[v] > 0) force = std::min(force, settings_.bearable * most[v] / per_newton[v]);
+  }
+  return std::max(force, kLeastForce);
 }
 
 void GripController::WatchSlip(const RobotState& state, double dt) {

@@ -1,10 +1,12 @@
 // The hand from its reach to the held object: follows the planned angles, recognises by pressure
-// and angle where each finger touches, presses with a chosen force once the opposed fingers do, and
-// regrips when pads come closer together than they were (enclosing: curl in faster than fingers
-// that settle), which the object only lets them if it slips. At the fingertips the force is held by
-// what is sensed of it.
+// and angle where each finger touches, presses once the opposed fingers do with a chosen force, or
+// what its valves can give, holds its posture across the grip from there on, and regrips when pads
+// come closer together than they were (enclosing: curl in faster than fingers that settle), which
+// the object only lets them if it slips. At the fingertips the force is held by what is sensed of
+// it.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -14,13 +16,15 @@
 
 namespace springgrasp {
 
-// A gripping hand is stiffer than a moving one: the closed chain damps it (tuned with the first
-// grasps, seeds below 1000).
-inline PneumaticGains StiffHold() {
+// A gripping hand is stiffer than a moving one: the closed chain damps it (tuned with the grasps of
+// experiments/four_grasps, seeds below 1000), the less the later (s) its sensors are.
+inline PneumaticGains StiffHold(double sensing_delay = 0) {
+  const double prompt = 1 / (1 + sensing_delay / 0.008);
   PneumaticGains gains;
-  gains.stiffness = 1.0;
-  gains.integral = 2.0;
-  gains.damping = 0.04;
+  gains.stiffness = 2.0 * prompt;
+  gains.integral = 2.0 * prompt;
+  gains.damping = 0.1 * prompt;
+  gains.lead = 4.0 * prompt;
   gains.max_integral = 0.25;
   gains.integral_leak = 1.5;
   return gains;
@@ -28,7 +32,7 @@ inline PneumaticGains StiffHold() {
 
 // Tuned with experiments/grip, seeds 1 and 11.
 struct GripSettings {
-  PneumaticGains moving, holding = StiffHold();
+  PneumaticGains moving;
   ContactSettings contact;
   double closing_rate = 0.6;        // rad/s, of a finger that did not touch where it was planned to
   double max_closing = 0.25;        // rad beyond the plan
@@ -38,6 +42,7 @@ struct GripSettings {
   double settle = 0.4;              // s after that until the posture is held
   double force_integral = 3;        // 1/s, of the sensed force's error
   double max_correction = 0.4;      // of the force
+  double bearable = 0.85;           // of the force that the valves can give, asked for at most
   double regrip_distance = 0.0015;  // m, that thumb and fingers come closer when the object slips
   double enclosing_regrip_distance = 0.003;  // m, that the fingers' pads come nearer to their bases
   double settling = 0.3;                     // s, within that time
@@ -84,6 +89,15 @@ class GripController {
   bool Presses(int finger) const {
     return task_.involved[finger] && (!task_.push_H || finger == kThumb);
   }
+  // One of the two joints of a finger that bend it.
+  bool IsFingerJoint(int joint) const { return joint != 0 && joint != model_.layout.opposition; }
+  // Whether a joint has part in the grip: its valve presses instead of following the plan.
+  bool Grips(int joint) const {
+    if (joint == 0) return !task_.push_H;
+    return Presses(IsFingerJoint(joint) ? (joint - 1) / 2 : int{kThumb});
+  }
+  GripTorque TorqueOf(double force) const;
+  double BearableForce(const RobotState& state) const;
   void Press(const RobotState& state, double dt, HandTarget& target);
   void WatchSlip(const RobotState& state, double dt);
   void CloseOn(const HandTarget& plan, bool all, double dt);
@@ -104,7 +118,8 @@ class GripController {
   PerFinger<double> closing_ = {};               // rad beyond the plan
   PerFinger<bool> planned_closing_ = {};         // moved by the plan since the hand is there
   bool pressing_ = false, held_ = false;
-  double correction_ = 0;  // N
+  double correction_ = 0;                                      // N
+  double bearable_ = std::numeric_limits<double>::infinity();  // N
   PerFinger<double> share_ = {1, 1, 1, 1, 1};
   double force_scale_ = 1, aperture_ = 0, since_regrip_ = 0;
   int regrips_ = 0;

@@ -7,6 +7,7 @@
 namespace springgrasp {
 namespace {
 
+constexpr double kFingerTorque = 0.1;   // Nm/bar, of the valves whose gains are given
 constexpr double kFrictionSpeed = 0.1;  // rad/s, of the copy, at which all of the friction is met
 
 using Copy = HandControlState::Copy;
@@ -46,7 +47,7 @@ ValveVector MeanOrZero(const HandLayout& layout, const HandVector& of_joints) {
 }  // namespace
 
 PneumaticHandModel::PneumaticHandModel(const HandLayout& hand) : layout(hand) {
-  torque_per_bar.setConstant(0.1);
+  torque_per_bar.setConstant(kFingerTorque);
   return_stiffness.setConstant(0.08);
   return_rest.setConstant(-0.2);
   damping.setConstant(0.02);
@@ -121,10 +122,11 @@ ValveVector ControlHand(const PneumaticHandModel& model, const PneumaticGains& g
     if (target.pressing[v]) {
       copy.q[v] = q[v], copy.qd[v] = qd[v], copy.pressure[v] = state.pressure[v];
       error = q_target[v] - q[v];
+      // The palm bears its forces with twice a finger's lever: a stronger valve is stiffer.
+      const double strength = g / kFingerTorque;
       wanted = model.return_stiffness[v] * (q[v] - model.return_rest[v]) + gravity[v] + torque[v] +
-               target.offset[v] + gains.stiffness * error - gains.damping * qd[v] +
+               target.offset[v] + strength * (gains.stiffness * error - gains.damping * qd[v]) +
                memory.integral[v];
-      if (!target.integrate) error = 0;
       memory.integral[v] -= dt * gains.integral_leak * memory.integral[v];
     } else {
       error = then.q[v] - q[v];

@@ -38,8 +38,9 @@ struct PneumaticHandModel {
 // f, I of every valve, and of gravity: factors drawn evenly from 1 ± error.
 PneumaticHandModel WithErrors(PneumaticHandModel model, double error, RandomEngine& engine);
 
-// Gains act on torque, per radian of joint error. Tuned on a free finger (bench/finger_statistics,
-// seeds below 1000).
+// Gains act on torque, per radian of joint error; pressing, on that of a finger, and on as many
+// times more as a valve is stronger. Tuned on a free finger (bench/finger_statistics, seeds below
+// 1000).
 struct PneumaticGains {
   double bandwidth = 32;            // rad/s, of the copy's angle
   double pressure_bandwidth = 110;  // rad/s, of the copy's pressure
@@ -58,7 +59,6 @@ struct HandTarget {
   HandVector torque;                         // Nm, of pressing valves; empty: none
   ValveVector offset = ValveVector::Zero();  // Nm, by which the model is known to err, added
   std::array<bool, kNumValves> pressing{};   // these press about q instead of following it
-  bool integrate = true;                     // false holds the integral of pressing valves
   double sensing_delay = 0;                  // s, known age of the state
 };
 

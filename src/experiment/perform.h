@@ -24,7 +24,7 @@ struct GripOptions {
   double acceleration = 20;         // m/s^2, that the grip shall withstand besides gravity
   double safety = 2.5;              // of the grip force
   double min_force = 2.5;           // N, of the thumb at the fingertips
-  double min_key_force = 5;         // N, of the thumb at a plate, which overhangs its contacts
+  double min_key_force = 3.5;       // N, of the thumb, whose one valve curls it in if it is more
   double min_enclosing_force = 10;  // N, of all fingers of a power grasp together
   GripSettings settings;
 };

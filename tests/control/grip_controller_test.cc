@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "control/toy_hand.h"
 
 namespace springgrasp {
@@ -58,6 +60,58 @@ TEST(GripControllerTest, WhatIsFeltOfTheForceBecomesWhatIsAskedFor) {
   grip.Run(controller, GripStage::kPressing, 4);
   const PerFinger<double> felt = controller.SensedForce();
   EXPECT_NEAR((felt[kThumb] + felt[kIndex]) / 2, 3, 0.05);
+}
+
+TEST(GripControllerTest, ThePalmBearsWhatTheFingersPressWith) {
+  Grip grip(3);
+  for (const int finger : {1, 2, 3, 4}) grip.hand.nodes[1 + 2 * finger].parent = 0;
+  GripController controller(grip.model, grip.hand, {0, 1, 2, 3, 4}, grip.task);
+  grip.Run(controller, GripStage::kFree, 0.5);
+  const double before = grip.state.pressure[0];
+  grip.Run(controller, GripStage::kPressing, 4);
+  const GripTorque wanted =
+      FingertipGripTorque(grip.hand, {0, 1, 2, 3, 4}, BodiesAt(grip.hand, grip.state.hand_q),
+                          {.involved = grip.task.involved, .force = 3});
+  ASSERT_GT(std::abs(wanted.torque[0]), 0.05);
+  // But for what the force's controller adds.
+  EXPECT_NEAR(grip.model.torque_per_bar[0] * (grip.state.pressure[0] - before), wanted.torque[0],
+              0.15 * std::abs(wanted.torque[0]));
+}
+
+TEST(GripControllerTest, PostureIsHeldAcrossTheGripFromTheFirstTouchOn) {
+  Grip grip(3);
+  GripController pushed(grip.model, grip.hand, {0, 1, 2, 3, 4}, grip.task);
+  grip.Run(pushed, GripStage::kFree, 0.5);
+  grip.Run(pushed, GripStage::kPressing, 0.7);
+  const HandDirections closing = ClosingDirections(
+      grip.hand, {0, 1, 2, 3, 4}, BodiesAt(grip.hand, grip.state.hand_q), grip.task.involved);
+  HandVector across = HandVector::Zero(11);
+  across.segment<4>(1).setOnes();
+  across -= closing.col(0).dot(across) * closing.col(0);
+  GripController still = pushed;
+  Grip moved = grip;
+  moved.state.hand_q += 0.05 * across;
+  grip.Run(still, GripStage::kPressing, kDt);
+  moved.Run(pushed, GripStage::kPressing, kDt);
+  // More pressure than the return springs take is pressure against the way that it was pushed.
+  double work = 0;
+  for (const int j : {1, 2, 3, 4}) {
+    work += across[j] * (moved.state.pressure[j] - grip.state.pressure[j]);
+  }
+  EXPECT_LT(work, -0.01 * across.squaredNorm());
+}
+
+TEST(GripControllerTest, NoMoreForceIsAskedForThanTheValvesCanGive) {
+  Grip grip(3);
+  grip.model.torque_per_bar *= 0.4;
+  grip.state.pressure /= 0.4;
+  GripController controller(grip.model, grip.hand, {0, 1, 2, 3, 4}, grip.task);
+  grip.Run(controller, GripStage::kFree, 0.5);
+  grip.Run(controller, GripStage::kPressing, 4);
+  EXPECT_LT(controller.target_force()[kThumb], 2.5);
+  EXPECT_GT(controller.target_force()[kThumb], 0.5);
+  EXPECT_LT(grip.state.pressure.maxCoeff(), kMaxPressureBar);
+  EXPECT_NEAR(controller.SensedForce()[kThumb], controller.target_force()[kThumb], 0.1);
 }
 
 TEST(GripControllerTest, FingersThatComeCloserThanTheyHeldRegripHarderUpToTheLimit) {

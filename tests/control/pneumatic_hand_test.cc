@@ -153,7 +153,6 @@ TEST(PneumaticHandTest, PressAddsTheTorqueItIsAskedFor) {
   HandTarget target;
   target.q = state.hand_q;
   target.pressing.fill(true);
-  target.integrate = false;
   PneumaticGains gains;
   gains.lead = 0;
   const ValveVector rest = ControlHand(model, gains, target, state, 0.002, memory);
