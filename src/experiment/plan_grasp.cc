@@ -45,6 +45,16 @@ double ClearanceOnTheWay(const RobotHand& hand, const Shape& shape, const Pose& 
   return clearance;
 }
 
+// Of palm and spare fingers from the object as it lies in the hand, a little less, m.
+double SpareDistance(const RobotHand& hand, const Shape& shape, const ContactPosture& posture,
+                     const PerFinger<bool>& involved) {
+  std::vector<Pose> X_HB;
+  ForwardKinematics(hand.tree, posture.q, X_HB);
+  PerFinger<bool> spare;
+  for (int f = 0; f < kNumFingers; ++f) spare[f] = !involved[f];
+  return HandDistance(hand, X_HB, posture.X_HO.inverse(), shape, spare, true) - 1e-4;
+}
+
 // In a hand's frame H, m/s^2.
 Eigen::Vector3d GravityIn(const Pose& X_WH) {
   return X_WH.linear().transpose() * Eigen::Vector3d(0, 0, -9.81);
@@ -184,10 +194,11 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
       if (edge_on) {
         X_OH = EdgeOnApproach(X_OH, result.posture.X_HG, motion.n_OC[kThumb], dt, motion.T);
       }
+      for (Pose& X : X_OH) X = X_OF * X;  // the object itself stays where it is
       // Late, only the way along the plate keeps off it.
       X_OH = ClearApproach(body.hand, generate.shape, X_OH, q_open, dt, motion.T,
                            kApproachClearance, 0.25, !edge_on);
-      for (Pose& X : X_OH) X = turned.X_WO * X;
+      for (Pose& X : X_OH) X = request.object.X_WO * X;
       return X_OH;
     };
 
@@ -200,10 +211,14 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     reach.shape = generate.shape;
     reach.X_WO = request.object.X_WO;
     reach.X_HO = result.posture.X_HO;
-    reach.X_HG = result.posture.X_HG;
+    reach.X_HC = ContactFrame(generate.shape, result.posture);
     reach.tilt_free = grasp.type != "power";
     reach.involved = motion.involved;
-    if (grasp.type == "lateral") reach.spare_clearance = kSpareClearance;
+    reach.spare_clearance =
+        grasp.type == "lateral"
+            ? kSpareClearance
+            : std::min(kSpareClearance,
+                       SpareDistance(body.hand, generate.shape, result.posture, motion.involved));
     reach.table_height = request.table_height;
     reach.table_edge = request.table_edge;
     reach.body = &body.arm_body;
@@ -219,10 +234,9 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
                                      result.posture.q, dt, motion.T);
     LetHang(body.hand, nominal, reach.q_hand);
     reach.path = path;
-    reach.clear = [&](const Pose& X_OF, const std::vector<Pose>& X_WH) {
-      const Pose X_OW = (request.object.X_WO * X_OF).inverse();
-      return ClearanceOnTheWay(body.hand, generate.shape, X_OW, X_WH, q_open,
-                               kWay * motion.T / dt) >= kBlocked;
+    reach.clear = [&](const std::vector<Pose>& X_WH) {
+      return ClearanceOnTheWay(body.hand, generate.shape, request.object.X_WO.inverse(), X_WH,
+                               q_open, kWay * motion.T / dt) >= kBlocked;
     };
     Arm arm = body.arm;
     for (int j = 0; j < arm.num_joints(); ++j) arm.q[arm.joints[j]] = request.arm_start[j];
@@ -237,7 +251,7 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     if (!planned.reachable) continue;
 
     // The chosen one in full.
-    const Pose X_WO = request.object.X_WO * planned.X_OF;
+    const Pose& X_WO = request.object.X_WO;
     path(planned.X_OF);
     q_human = SolveHandMotionSmoothly(human, TipsOf(motion), {.dt = dt});
     HandMotionResult hand = MapHandMotion(
@@ -283,7 +297,7 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     plan.hand = Fixed<HandVector>(q_hand);
     plan.lift = Fixed<ArmVector>(planned.lift);
     for (int axis = 0; axis < 3; ++axis) plan.shake[axis] = Fixed<ArmVector>(planned.shake[axis]);
-    plan.X_HO = result.posture.X_HO;
+    plan.X_HO = planned.X_WH.back().inverse() * X_WO;
     if (request.place && !PlanPlaceTo(arm, request, planned, motion.T, plan, result.reason)) {
       continue;
     }

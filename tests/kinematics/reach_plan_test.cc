@@ -20,7 +20,7 @@ ReachRequest MakeReach(const std::string& type, const std::string& shape,
   request.X_WO.translation() << place,
       table + 0.5 * request.shape.size.z() + (type == "pinch" ? 0.02 : 0);
   request.X_HO = posture.X_HO;
-  request.X_HG = posture.X_HG;
+  request.X_HC = ContactFrame(request.shape, posture);
   request.tilt_free = type != "power";
   request.table_height = table;
   request.table_edge = 0.41;
@@ -42,7 +42,7 @@ ReachRequest MakeReach(const std::string& type, const std::string& shape,
     }
     return path;
   };
-  request.clear = [](const Pose&, const std::vector<Pose>&) { return true; };
+  request.clear = [](const std::vector<Pose>&) { return true; };
   return request;
 }
 
@@ -106,7 +106,7 @@ TEST(FreeMotionsTest, KeepTheContactsOnTheObject) {
     ReachRequest request;
     request.shape = contact.shape;
     request.X_HO = posture.X_HO;
-    request.X_HG = posture.X_HG;
+    request.X_HC = ContactFrame(request.shape, posture);
     const std::vector<FreeMotion> motions = FreeMotions(request);
     EXPECT_TRUE(motions.front().X_OF.isApprox(Pose::Identity()));
     for (const FreeMotion& motion : motions) {
