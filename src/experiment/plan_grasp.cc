@@ -116,27 +116,21 @@ double LowestPoint(const Shape& shape, const Eigen::Matrix3d& R_WO) {
   return up_O.dot(shape.size) / 2;
 }
 
-// Adds the way to request.place; false with a reason where the arm finds none.
-bool PlanPlaceTo(const Arm& arm, const PlanRequest& request, const ReachPlan& reach, double T,
-                 GraspPlan& plan, std::string& reason) {
+// The way to request.place from where `reach` ends, for an object of this shape.
+PlacePlan PlanPlaceTo(const Arm& arm, const PlanRequest& request, const Shape& shape,
+                      const ReachPlan& reach, double T, Pose& X_WO_place) {
   PlaceRequest place;
   place.X_WO = place.X_WO_place = request.object.X_WO;
   place.X_WO_place.translation() << *request.place,
-      request.table_height + LowestPoint(plan.shape, request.object.X_WO.linear());
-  place.X_WH = plan.X_WH;
+      request.table_height + LowestPoint(shape, request.object.X_WO.linear());
+  place.X_WH = reach.X_WH;
   place.T = T;
   place.q_lifted = reach.lift.back();
   place.lift = request.criteria.lift_height;
   place.dt = request.dt;
   place.criteria = request.criteria;
-  const PlacePlan way = PlanPlace(arm, place);
-  reason = way.reason;
-  if (!way.complete) return false;
-  plan.X_WO_place = place.X_WO_place;
-  plan.X_WH_place = way.X_WH;
-  plan.place = Fixed<ArmVector>(way.arm);
-  plan.retreat = Fixed<ArmVector>(way.retreat);
-  return true;
+  X_WO_place = place.X_WO_place;
+  return PlanPlace(arm, place);
 }
 
 }  // namespace
@@ -240,6 +234,14 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     };
     Arm arm = body.arm;
     for (int j = 0; j < arm.num_joints(); ++j) arm.q[arm.joints[j]] = request.arm_start[j];
+    PlacePlan place;
+    Pose X_WO_place = Pose::Identity();
+    if (request.place) {
+      reach.refusal = [&](const ReachPlan& reached) {
+        place = PlanPlaceTo(arm, request, generate.shape, reached, motion.T, X_WO_place);
+        return place.reason;
+      };
+    }
     ReachOptions options;
     options.lift = request.criteria.lift_height;
     options.lift_duration = request.criteria.lift;
@@ -248,6 +250,7 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     options.shake_duration = request.criteria.shake_duration;
     const ReachPlan planned = PlanReach(arm, body.hand, reach, options);
     result.reason = planned.reason;
+    result.holds = planned.holds;
     if (!planned.reachable) continue;
 
     // The chosen one in full.
@@ -298,8 +301,11 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     plan.lift = Fixed<ArmVector>(planned.lift);
     for (int axis = 0; axis < 3; ++axis) plan.shake[axis] = Fixed<ArmVector>(planned.shake[axis]);
     plan.X_HO = planned.X_WH.back().inverse() * X_WO;
-    if (request.place && !PlanPlaceTo(arm, request, planned, motion.T, plan, result.reason)) {
-      continue;
+    if (request.place) {
+      plan.X_WO_place = X_WO_place;
+      plan.X_WH_place = place.X_WH;
+      plan.place = Fixed<ArmVector>(place.arm);
+      plan.retreat = Fixed<ArmVector>(place.retreat);
     }
     plan.released = power ? q_open
                           : OpenedPosture(body.hand, result.posture, generate.shape,

@@ -45,6 +45,11 @@ std::vector<BasePosture> MovesIntoReach(const Scene& scene, const ReachAids& aid
                                         const Eigen::Vector3d& p_WO,
                                         const ReachMapOptions& options);
 
+// The same for a grasp's hand poses that hold the object: those from which the most of 48 of
+// them are reached and can be lifted by `lift` (m).
+std::vector<BasePosture> MovesToHold(const Scene& scene, const ReachAids& aids,
+                                     const std::vector<Pose>& X_WH, double lift);
+
 std::string FormatReachReport(const ReachReport& report);
 // From above, side and above by columns, heights by rows; BGR.
 cv::Mat DrawReachReport(const ReachReport& report, const Scene& scene);

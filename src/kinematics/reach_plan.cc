@@ -90,7 +90,7 @@ bool ClearOfObject(const RobotHand& hand, const ReachRequest& request, const Fre
 // The goal of one free motion: reached, liftable, shakable, clear of the table.
 std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRequest& request,
                             const ReachOptions& options, const FreeMotion& motion,
-                            GoalFaults& faults) {
+                            GoalFaults& faults, std::vector<Pose>& holds) {
   const auto fails = [](int& count) {
     ++count;
     return std::nullopt;
@@ -102,6 +102,7 @@ std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRe
                                       request.table_edge);
   if (above < kLeastClearance) return fails(faults.hand_in_table);
   if (!ClearOfObject(hand, request, motion)) return fails(faults.in_object);
+  holds.push_back(goal.X_WH);
   ArmIkOptions ik;
   ik.starts = 4;
   const std::optional<Eigen::VectorXd> q =
@@ -224,9 +225,9 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
   for (const Eigen::VectorXd& q : plan.lift) {
     plan.limit_margin = std::min(plan.limit_margin, LimitMargin(arm, q));
   }
-  plan.reachable = true;
-  plan.reason.clear();
-  return true;
+  plan.reason = request.refusal ? request.refusal(plan) : "";
+  plan.reachable = plan.reason.empty();
+  return plan.reachable;
 }
 
 // PlanReach within one range of tilts.
@@ -237,7 +238,7 @@ ReachPlan PlanWithin(const Arm& arm, const RobotHand& hand, const ReachRequest& 
   GoalFaults faults;
   for (const FreeMotion& motion : FreeMotions(request, options)) {
     ++plan.candidates;
-    std::optional<Goal> goal = TryGoal(arm, hand, request, options, motion, faults);
+    std::optional<Goal> goal = TryGoal(arm, hand, request, options, motion, faults, plan.holds);
     if (goal) goals.push_back(std::move(*goal));
   }
   plan.goals = static_cast<int>(goals.size());

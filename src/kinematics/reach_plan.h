@@ -16,6 +16,8 @@
 
 namespace springgrasp {
 
+struct ReachPlan;
+
 struct ReachRequest {
   Shape shape;
   Pose X_WO = Pose::Identity();         // believed object pose
@@ -41,6 +43,8 @@ struct ReachRequest {
   std::function<std::vector<Pose>(const Pose& X_OF)> path;
   // Whether the object leaves that way free.
   std::function<bool(const std::vector<Pose>& X_WH)> clear;
+  // What else the arm has to be able to do after the lift; empty: it is, else why not. May be null.
+  std::function<std::string(const ReachPlan& plan)> refusal;
 };
 
 struct ReachOptions {
@@ -80,6 +84,8 @@ struct ReachPlan {
   double self_clearance = 0;      // m, smallest of arm and rest of the robot, up to 0.05
   double via_raise = 0;           // m, added in the middle of the path
   int candidates = 0, goals = 0;  // tried, and reached at the goal
+  // Hand poses of the widest search that hold the object clear of the table, reached or not.
+  std::vector<Pose> holds;
 };
 
 // Motions F of the hand about O that leave the contacts as good as they are: sphere: turns about
