@@ -26,10 +26,11 @@ constexpr double kWay = 0.72;                // of T, then the object enters the
 // with experiments/first_grasps, seeds below 1000).
 constexpr double kBlocked = -0.01;        // m, less than this on the way and another pose is tried
 constexpr double kWaitClearance = 0.015;  // m, between object and waiting fingers
-constexpr double kReleaseClearance = 0.05;  // m, between object and fingers that let go
-constexpr double kInset = 0.015;            // m, of a plate, between its edge and the contacts
-constexpr double kSpareClearance = 0.003;   // m, between a plate and what shall not touch it
-constexpr double kFastest = 1.5;            // s, reach of the robot's arm
+constexpr double kReleaseClearance = 0.05;   // m, between object and fingers that let go
+constexpr double kInset = 0.015;             // m, of a plate, between its edge and the contacts
+constexpr double kSpareClearance = 0.003;    // m, between a plate and what shall not touch it
+constexpr double kSetDownClearance = 0.012;  // m, between table and a hand that sets down
+constexpr double kFastest = 1.5;             // s, reach of the robot's arm
 
 // Smallest distance of the open hand from the object over the first `samples` of the way, m.
 double ClearanceOnTheWay(const RobotHand& hand, const Shape& shape, const Pose& X_OW,
@@ -248,7 +249,13 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     options.shake = request.criteria.shake_amplitude;
     options.shake_frequency = request.criteria.shake_frequency;
     options.shake_duration = request.criteria.shake_duration;
-    const ReachPlan planned = PlanReach(arm, body.hand, reach, options);
+    // An object that slides in the hand is set down with the hand lower than it took it.
+    if (request.place) options.least_clearance = kSetDownClearance;
+    ReachPlan planned = PlanReach(arm, body.hand, reach, options);
+    if (!planned.reachable && request.place) {
+      options.least_clearance = ReachOptions().least_clearance;
+      planned = PlanReach(arm, body.hand, reach, options);
+    }
     result.reason = planned.reason;
     result.holds = planned.holds;
     if (!planned.reachable) continue;

@@ -15,7 +15,7 @@ namespace springgrasp {
 namespace {
 
 constexpr double kEnoughMargin = 0.25;     // of half a joint's range; more is no better
-constexpr double kLeastClearance = 0.002;  // m, a goal nearer to the table is not taken
+constexpr double kLeastClearance = 0.002;  // m, a way nearer to the table is not taken
 constexpr double kFar = 0.05;              // m, what is farther off is as good as far
 constexpr double kDeeper = 0.001;          // m, that a finger may enter more than as planned
 constexpr double kSlideStep = 0.0125;      // m
@@ -100,7 +100,7 @@ std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRe
   goal.X_WH = request.X_WO * motion.X_OF * request.X_HO.inverse();
   const double above = HandAboveTable(hand, goal.X_WH, request.q_hand.back(), request.table_height,
                                       request.table_edge);
-  if (above < kLeastClearance) return fails(faults.hand_in_table);
+  if (above < options.least_clearance) return fails(faults.hand_in_table);
   if (!ClearOfObject(hand, request, motion)) return fails(faults.in_object);
   holds.push_back(goal.X_WH);
   ArmIkOptions ik;

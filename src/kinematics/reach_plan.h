@@ -56,6 +56,7 @@ struct ReachOptions {
   double any_tilt = 2.6179938779914944;          // rad, 150 degrees
   double slide_step = 0;                         // m, 0: contacts do not slide
   double clearance = 0.010;                      // m, of hand and forearm above the table
+  double least_clearance = 0.002;                // m, a goal nearer to the table is not taken
   double lift = 0.15;                            // m
   double shake = 0.020;                          // m, along each axis
   double shake_frequency = 2;                    // Hz
