@@ -149,7 +149,7 @@ std::vector<BasePosture> MovesIntoReach(const Scene& scene, const ReachAids& aid
 
 std::vector<BasePosture> MovesToHold(const Scene& scene, const ReachAids& aids,
                                      const std::vector<Pose>& X_WH, double lift) {
-  constexpr std::size_t kMost = 3, kLooked = 48;
+  constexpr std::size_t kMost = 5, kLooked = 48;
   constexpr int kEnough = 12;
   constexpr double kNear = 0.002;  // m, of arm and table or robot
   std::vector<BasePosture> moves;
