@@ -45,8 +45,8 @@ std::vector<BasePosture> MovesIntoReach(const Scene& scene, const ReachAids& aid
                                         const Eigen::Vector3d& p_WO,
                                         const ReachMapOptions& options);
 
-// The same for a grasp's hand poses that hold the object: those from which the most of 48 of
-// them are reached and can be lifted by `lift` (m).
+// Postures from which hand poses that hold an object are reached and can be lifted by `lift` (m);
+// those from which most of 48 of them are come first, of equal ones the least; at most 5.
 std::vector<BasePosture> MovesToHold(const Scene& scene, const ReachAids& aids,
                                      const std::vector<Pose>& X_WH, double lift);
 
