@@ -108,9 +108,9 @@ std::vector<Grasp> ShippedGrasps() {
   return grasps;
 }
 
-// From the scene's start posture.
-TrialResult PerformFrom(const Grasp& grasp, const Scene& scene,
-                        const PerformGraspOptions& options) {
+// From the scene's start posture. `holds`: see PlanResult.
+TrialResult PerformFrom(const Grasp& grasp, const Scene& scene, const PerformGraspOptions& options,
+                        std::vector<Pose>* holds = nullptr) {
   TrialResult result;
   BuildOptions build;
   build.with_looks = false;
@@ -143,6 +143,7 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene,
   }
   PlanResult plan = PlanGrasp(body, grasp, request);
   RecordPlan(plan, result);
+  if (holds != nullptr && !body.mirrored) *holds = plan.holds;
   if (!plan.plan) {
     result.outcome = Outcome::kUnreachable;
     result.message = plan.reason;
@@ -198,13 +199,16 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene,
 
 TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
                          const PerformGraspOptions& options) {
-  const TrialResult result = PerformFrom(grasp, scene, options);
+  std::vector<Pose> holds;
+  const TrialResult result = PerformFrom(grasp, scene, options, &holds);
   const ReachAids aids = AidsOf(scene);
   if (result.outcome != Outcome::kUnreachable || !(aids.torso || aids.platform)) return result;
   Scene believed = scene;
   if (options.believe_truth) believed.objects[0].believed = SceneBelief();
   const Eigen::Vector3d p_WO = BelieveObject(believed, 0).X_WO.translation();
-  for (const BasePosture& base : MovesIntoReach(scene, aids, p_WO, {})) {
+  std::vector<BasePosture> bases = MovesToHold(scene, aids, holds, options.criteria.lift_height);
+  for (const BasePosture& base : MovesIntoReach(scene, aids, p_WO, {})) bases.push_back(base);
+  for (const BasePosture& base : bases) {
     Scene moved = scene;
     for (const auto& [joint, value] : base) moved.start[joint] = value;
     TrialResult again = PerformFrom(grasp, moved, options);

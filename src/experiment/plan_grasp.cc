@@ -26,10 +26,11 @@ constexpr double kWay = 0.72;                // of T, then the object enters the
 // with experiments/first_grasps, seeds below 1000).
 constexpr double kBlocked = -0.01;        // m, less than this on the way and another pose is tried
 constexpr double kWaitClearance = 0.015;  // m, between object and waiting fingers
-constexpr double kReleaseClearance = 0.05;  // m, between object and fingers that let go
-constexpr double kInset = 0.015;            // m, of a plate, between its edge and the contacts
-constexpr double kSpareClearance = 0.003;   // m, between a plate and what shall not touch it
-constexpr double kFastest = 1.5;            // s, reach of the robot's arm
+constexpr double kReleaseClearance = 0.05;   // m, between object and fingers that let go
+constexpr double kInset = 0.015;             // m, of a plate, between its edge and the contacts
+constexpr double kSpareClearance = 0.003;    // m, between a plate and what shall not touch it
+constexpr double kSetDownClearance = 0.012;  // m, between table and a hand that sets down
+constexpr double kFastest = 1.5;             // s, reach of the robot's arm
 
 // Smallest distance of the open hand from the object over the first `samples` of the way, m.
 double ClearanceOnTheWay(const RobotHand& hand, const Shape& shape, const Pose& X_OW,
@@ -43,6 +44,16 @@ double ClearanceOnTheWay(const RobotHand& hand, const Shape& shape, const Pose& 
                                                  {true, true, true, true, true}, true));
   }
   return clearance;
+}
+
+// Of palm and spare fingers from the object as it lies in the hand, a little less, m.
+double SpareDistance(const RobotHand& hand, const Shape& shape, const ContactPosture& posture,
+                     const PerFinger<bool>& involved) {
+  std::vector<Pose> X_HB;
+  ForwardKinematics(hand.tree, posture.q, X_HB);
+  PerFinger<bool> spare;
+  for (int f = 0; f < kNumFingers; ++f) spare[f] = !involved[f];
+  return HandDistance(hand, X_HB, posture.X_HO.inverse(), shape, spare, true) - 1e-4;
 }
 
 // In a hand's frame H, m/s^2.
@@ -106,27 +117,21 @@ double LowestPoint(const Shape& shape, const Eigen::Matrix3d& R_WO) {
   return up_O.dot(shape.size) / 2;
 }
 
-// Adds the way to request.place; false with a reason where the arm finds none.
-bool PlanPlaceTo(const Arm& arm, const PlanRequest& request, const ReachPlan& reach, double T,
-                 GraspPlan& plan, std::string& reason) {
+// The way to request.place from where `reach` ends, for an object of this shape.
+PlacePlan PlanPlaceTo(const Arm& arm, const PlanRequest& request, const Shape& shape,
+                      const ReachPlan& reach, double T, Pose& X_WO_place) {
   PlaceRequest place;
   place.X_WO = place.X_WO_place = request.object.X_WO;
   place.X_WO_place.translation() << *request.place,
-      request.table_height + LowestPoint(plan.shape, request.object.X_WO.linear());
-  place.X_WH = plan.X_WH;
+      request.table_height + LowestPoint(shape, request.object.X_WO.linear());
+  place.X_WH = reach.X_WH;
   place.T = T;
   place.q_lifted = reach.lift.back();
   place.lift = request.criteria.lift_height;
   place.dt = request.dt;
   place.criteria = request.criteria;
-  const PlacePlan way = PlanPlace(arm, place);
-  reason = way.reason;
-  if (!way.complete) return false;
-  plan.X_WO_place = place.X_WO_place;
-  plan.X_WH_place = way.X_WH;
-  plan.place = Fixed<ArmVector>(way.arm);
-  plan.retreat = Fixed<ArmVector>(way.retreat);
-  return true;
+  X_WO_place = place.X_WO_place;
+  return PlanPlace(arm, place);
 }
 
 }  // namespace
@@ -184,10 +189,11 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
       if (edge_on) {
         X_OH = EdgeOnApproach(X_OH, result.posture.X_HG, motion.n_OC[kThumb], dt, motion.T);
       }
+      for (Pose& X : X_OH) X = X_OF * X;  // the object itself stays where it is
       // Late, only the way along the plate keeps off it.
       X_OH = ClearApproach(body.hand, generate.shape, X_OH, q_open, dt, motion.T,
                            kApproachClearance, 0.25, !edge_on);
-      for (Pose& X : X_OH) X = turned.X_WO * X;
+      for (Pose& X : X_OH) X = request.object.X_WO * X;
       return X_OH;
     };
 
@@ -200,10 +206,14 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     reach.shape = generate.shape;
     reach.X_WO = request.object.X_WO;
     reach.X_HO = result.posture.X_HO;
-    reach.X_HG = result.posture.X_HG;
+    reach.X_HC = ContactFrame(generate.shape, result.posture);
     reach.tilt_free = grasp.type != "power";
     reach.involved = motion.involved;
-    if (grasp.type == "lateral") reach.spare_clearance = kSpareClearance;
+    reach.spare_clearance =
+        grasp.type == "lateral"
+            ? kSpareClearance
+            : std::min(kSpareClearance,
+                       SpareDistance(body.hand, generate.shape, result.posture, motion.involved));
     reach.table_height = request.table_height;
     reach.table_edge = request.table_edge;
     reach.body = &body.arm_body;
@@ -219,25 +229,39 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
                                      result.posture.q, dt, motion.T);
     LetHang(body.hand, nominal, reach.q_hand);
     reach.path = path;
-    reach.clear = [&](const Pose& X_OF, const std::vector<Pose>& X_WH) {
-      const Pose X_OW = (request.object.X_WO * X_OF).inverse();
-      return ClearanceOnTheWay(body.hand, generate.shape, X_OW, X_WH, q_open,
-                               kWay * motion.T / dt) >= kBlocked;
+    reach.clear = [&](const std::vector<Pose>& X_WH) {
+      return ClearanceOnTheWay(body.hand, generate.shape, request.object.X_WO.inverse(), X_WH,
+                               q_open, kWay * motion.T / dt) >= kBlocked;
     };
     Arm arm = body.arm;
     for (int j = 0; j < arm.num_joints(); ++j) arm.q[arm.joints[j]] = request.arm_start[j];
+    PlacePlan place;
+    Pose X_WO_place = Pose::Identity();
+    if (request.place) {
+      reach.refusal = [&](const ReachPlan& reached) {
+        place = PlanPlaceTo(arm, request, generate.shape, reached, motion.T, X_WO_place);
+        return place.reason;
+      };
+    }
     ReachOptions options;
     options.lift = request.criteria.lift_height;
     options.lift_duration = request.criteria.lift;
     options.shake = request.criteria.shake_amplitude;
     options.shake_frequency = request.criteria.shake_frequency;
     options.shake_duration = request.criteria.shake_duration;
-    const ReachPlan planned = PlanReach(arm, body.hand, reach, options);
+    // An object that slides in the hand is set down with the hand lower than it took it.
+    if (request.place) options.least_clearance = kSetDownClearance;
+    ReachPlan planned = PlanReach(arm, body.hand, reach, options);
+    if (!planned.reachable && request.place) {
+      options.least_clearance = ReachOptions().least_clearance;
+      planned = PlanReach(arm, body.hand, reach, options);
+    }
     result.reason = planned.reason;
+    result.holds = planned.holds;
     if (!planned.reachable) continue;
 
     // The chosen one in full.
-    const Pose X_WO = request.object.X_WO * planned.X_OF;
+    const Pose& X_WO = request.object.X_WO;
     path(planned.X_OF);
     q_human = SolveHandMotionSmoothly(human, TipsOf(motion), {.dt = dt});
     HandMotionResult hand = MapHandMotion(
@@ -283,9 +307,12 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     plan.hand = Fixed<HandVector>(q_hand);
     plan.lift = Fixed<ArmVector>(planned.lift);
     for (int axis = 0; axis < 3; ++axis) plan.shake[axis] = Fixed<ArmVector>(planned.shake[axis]);
-    plan.X_HO = result.posture.X_HO;
-    if (request.place && !PlanPlaceTo(arm, request, planned, motion.T, plan, result.reason)) {
-      continue;
+    plan.X_HO = planned.X_WH.back().inverse() * X_WO;
+    if (request.place) {
+      plan.X_WO_place = X_WO_place;
+      plan.X_WH_place = place.X_WH;
+      plan.place = Fixed<ArmVector>(place.arm);
+      plan.retreat = Fixed<ArmVector>(place.retreat);
     }
     plan.released = power ? q_open
                           : OpenedPosture(body.hand, result.posture, generate.shape,

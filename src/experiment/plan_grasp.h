@@ -38,7 +38,9 @@ struct PlanResult {
   double self_clearance = 0;   // m, see ReachPlan
   double join = 0;             // of T: before, the arm comes straight from its start
   double clearance = 0;        // m, hand and object before closing
-  double free_angle_deg = 0;   // how far the chosen pose is turned from the demonstrated one
+  // Hand poses that would hold the object, reached or not: a base to reach them from may be sought.
+  std::vector<Pose> holds;
+  double free_angle_deg = 0;  // how far the chosen pose is turned from the demonstrated one
 };
 
 // System contract 5.5-5.7: the grasp frame G is carried over, not the wrist; what the object leaves

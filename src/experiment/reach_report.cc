@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "experiment/robot_body.h"
+#include "kinematics/reach_plan.h"
 #include "sim/arm_body_of.h"
 #include "sim/kinematic_tree_of.h"
 #include "sim/scene_builder.h"
@@ -142,6 +143,59 @@ std::vector<BasePosture> MovesIntoReach(const Scene& scene, const ReachAids& aid
     if (!enough(quick, false) || !enough(MakeReacher(scene, base), true)) continue;
     moves.push_back(base);
     if (moves.size() == kMost) break;
+  }
+  return moves;
+}
+
+std::vector<BasePosture> MovesToHold(const Scene& scene, const ReachAids& aids,
+                                     const std::vector<Pose>& X_WH, double lift) {
+  constexpr std::size_t kMost = 5, kLooked = 48;
+  constexpr int kEnough = 12;
+  constexpr double kNear = 0.002;  // m, of arm and table or robot
+  std::vector<BasePosture> moves;
+  std::vector<Pose> holds;
+  const std::size_t count = std::min(kLooked, X_WH.size());
+  for (std::size_t i = 0; i < count; ++i) holds.push_back(X_WH[i * X_WH.size() / count]);
+  Scene movable = scene;
+  movable.active.insert(movable.active.end(), {"torso", "platform"});
+  Reacher quick = MakeReacher(movable, {});
+  const Eigen::VectorXd start = quick.arm.q;
+  ArmIkOptions ik;
+  ik.starts = 4;
+  const auto reached = [&](const Reacher& reacher, bool with_body) {
+    int hits = 0;
+    std::vector<Pose> X_WB;
+    for (const Pose& hold : holds) {
+      const auto q = SolveArmIkFromAnywhere(reacher.arm, hold, ik);
+      if (!q) continue;
+      Pose lifted = hold;
+      lifted.translation().z() += lift;
+      if (!SolveArmIkFromAnywhere(reacher.arm, lifted, ik)) continue;
+      hits += ForearmAboveTable(reacher.arm, *q, reacher.around.table_height,
+                                reacher.around.table_edge) >= kNear &&
+              (!with_body || SelfClearance(reacher.arm, reacher.body, *q, kNear, X_WB) >= kNear);
+    }
+    return hits;
+  };
+  std::vector<std::pair<int, BasePosture>> found;
+  int well = 0;
+  for (const auto& [cost, base] :
+       Candidates(aids, scene.table.position.y() - scene.table.size.y() / 2)) {
+    quick.arm.q = start;
+    for (const auto& [joint, value] : base) {
+      quick.arm.q[quick.arm.tree.JointIndex(joint)] = value;
+    }
+    const int hits = std::min(kEnough, reached(quick, false));
+    if (hits == 0) continue;
+    found.emplace_back(hits, base);
+    well += hits == kEnough;
+    if (well >= 2 * static_cast<int>(kMost)) break;
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (const auto& [hits, base] : found) {
+    if (moves.size() == kMost) break;
+    if (reached(MakeReacher(scene, base), true) > 0) moves.push_back(base);
   }
   return moves;
 }

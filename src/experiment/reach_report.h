@@ -45,6 +45,11 @@ std::vector<BasePosture> MovesIntoReach(const Scene& scene, const ReachAids& aid
                                         const Eigen::Vector3d& p_WO,
                                         const ReachMapOptions& options);
 
+// Postures from which hand poses that hold an object are reached and can be lifted by `lift` (m);
+// those from which most of 48 of them are come first, of equal ones the least; at most 5.
+std::vector<BasePosture> MovesToHold(const Scene& scene, const ReachAids& aids,
+                                     const std::vector<Pose>& X_WH, double lift);
+
 std::string FormatReachReport(const ReachReport& report);
 // From above, side and above by columns, heights by rows; BGR.
 cv::Mat DrawReachReport(const ReachReport& report, const Scene& scene);

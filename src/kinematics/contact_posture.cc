@@ -338,6 +338,16 @@ void JudgePosture(const RobotHand& hand, const ContactRequest& request, ContactP
   posture.opposition_deg = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
+Pose ContactFrame(const Shape& shape, const ContactPosture& posture) {
+  const Pose X_OG = posture.X_HO.inverse() * posture.X_HG;
+  Eigen::Vector3d n;
+  SignedDistance(shape, posture.p_OC[kThumb], &n);
+  Pose X_OC = Pose::Identity();
+  X_OC.linear() = FrameFromXZ(-n, X_OG.linear().col(2));
+  X_OC.translation() = posture.p_OC[kThumb];
+  return posture.X_HO * X_OC;
+}
+
 ContactPosture SolveContactPosture(const RobotHand& hand, const ContactRequest& request,
                                    const ContactPostureOptions& options) {
   const bool known = request.type == "pinch" || request.type == "tripod" ||

@@ -54,6 +54,11 @@ struct ContactPosture {
 ContactPosture SolveContactPosture(const RobotHand& hand, const ContactRequest& request,
                                    const ContactPostureOptions& options = {});
 
+// The frame about which a hand in this posture can turn and keep its contacts: at the thumb's
+// contact, x along its push, z as near to G's as may be; in H. On flat faces the contacts slide off
+// the demonstrated line, so that x is not G's.
+Pose ContactFrame(const Shape& shape, const ContactPosture& posture);
+
 // Fills what can be measured of a posture (X_HG, p_OC, gap, slide, penetration, ...) from its X_HO
 // and q.
 void JudgePosture(const RobotHand& hand, const ContactRequest& request, ContactPosture& posture);

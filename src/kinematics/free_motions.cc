@@ -14,6 +14,7 @@ constexpr double kForearmRadius = 0.047;      // m (models/armar3b)
 constexpr double kWristRadius = 0.03;         // m
 constexpr double kSquare = 0.002;             // m, sides as equal as this are equal
 constexpr double kRoll = 20 * kPi / 180;      // rad, about G's z (spheres)
+constexpr double kBelowEnd = 0.012;           // m, contacts stay so far below the upper end
 constexpr double kTiltStep = 10 * kPi / 180;  // rad
 
 // Turns 0, +step, -step, +2 step, ... up to `most` (inclusive).
@@ -36,11 +37,11 @@ Pose TurnAbout(const Eigen::Vector3d& p, const Eigen::Vector3d& axis, double ang
 }  // namespace
 
 std::vector<FreeMotion> FreeMotions(const ReachRequest& request, const ReachOptions& options) {
-  const Pose X_OG = request.X_HO.inverse() * request.X_HG;
+  const Pose X_OC = request.X_HO.inverse() * request.X_HC;
   const bool sphere = request.shape.kind == Shape::Kind::kSphere;
   const Eigen::Vector3d up_O =
       sphere ? Eigen::Vector3d(request.X_WO.linear().row(2)) : Eigen::Vector3d::UnitZ();
-  std::vector<double> yaws, rolls = {0}, tilts = {0};
+  std::vector<double> yaws, rolls = {0}, tilts = {0}, slides = {0};
   if (request.shape.kind == Shape::Kind::kBox) {
     const bool square = std::abs(request.shape.size.x() - request.shape.size.y()) < kSquare;
     yaws = square ? std::vector<double>{0, kPi / 2, -kPi / 2, kPi} : std::vector<double>{0, kPi};
@@ -54,17 +55,26 @@ std::vector<FreeMotion> FreeMotions(const ReachRequest& request, const ReachOpti
     tilts = Around(2 * kTiltStep, options.last_resort_tilt);
   } else if (request.tilt_free) {
     tilts = Around(kTiltStep, options.max_tilt);
+    // Along faces and the round, not along the normal of end faces.
+    const bool along = std::abs(X_OC(2, 0)) < 0.1;
+    const double highest = request.shape.size.z() / 2 - kBelowEnd - X_OC.translation().z();
+    for (int i = 1; along && options.slide_step > 0 && i * options.slide_step <= highest; ++i) {
+      slides.push_back(i * options.slide_step);
+    }
   }
+  // A sphere turns about its own centre, so that its contacts stay on it.
+  const Eigen::Vector3d p = (sphere ? 0.0 : 1.0) * X_OC.translation();
   std::vector<FreeMotion> motions;
-  for (const double tilt : tilts) {
-    for (const double roll : rolls) {
-      for (const double yaw : yaws) {
-        // A sphere turns about its own centre, so that its contacts stay on it.
-        const Eigen::Vector3d p = (sphere ? 0.0 : 1.0) * X_OG.translation();
-        const Pose X_tilt = TurnAbout(p, X_OG.linear().col(0), tilt);
-        const Pose X_roll = TurnAbout(p, X_OG.linear().col(2), roll);
-        const Pose X_yaw = TurnAbout(Eigen::Vector3d::Zero(), up_O.normalized(), yaw);
-        motions.push_back({X_yaw * X_tilt * X_roll, yaw, tilt, roll});
+  for (const double slide : slides) {
+    const Pose X_slide(Eigen::Translation3d(0, 0, slide));
+    for (const double tilt : tilts) {
+      const Pose X_tilt = TurnAbout(p, X_OC.linear().col(0), tilt);
+      for (const double roll : rolls) {
+        const Pose X_roll = TurnAbout(p, X_OC.linear().col(2), roll);
+        for (const double yaw : yaws) {
+          const Pose X_yaw = TurnAbout(Eigen::Vector3d::Zero(), up_O.normalized(), yaw);
+          motions.push_back({X_slide * X_yaw * X_tilt * X_roll, yaw, tilt, roll, slide});
+        }
       }
     }
   }

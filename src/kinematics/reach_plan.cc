@@ -15,8 +15,10 @@ namespace springgrasp {
 namespace {
 
 constexpr double kEnoughMargin = 0.25;     // of half a joint's range; more is no better
-constexpr double kLeastClearance = 0.002;  // m, a goal nearer to the table is not taken
+constexpr double kLeastClearance = 0.002;  // m, a way nearer to the table is not taken
 constexpr double kFar = 0.05;              // m, what is farther off is as good as far
+constexpr double kDeeper = 0.001;          // m, that a finger may enter more than as planned
+constexpr double kSlideStep = 0.0125;      // m
 constexpr double kNearCost = 10;           // per second, of a posture that touches
 
 // Arm and the rest of its robot, up to kFar.
@@ -69,21 +71,26 @@ std::string Describe(const GoalFaults& faults) {
   return text;
 }
 
-// Of the palm and the fingers that shall not touch, from the object, m.
-double SpareClearance(const RobotHand& hand, const ReachRequest& request,
-                      const FreeMotion& motion) {
-  if (request.spare_clearance <= 0) return kFar;
+// Whether palm and spare fingers keep off the object, and the others as far out of it as planned.
+bool ClearOfObject(const RobotHand& hand, const ReachRequest& request, const FreeMotion& motion) {
+  if (request.spare_clearance <= 0) return true;
   std::vector<Pose> X_HB;
   ForwardKinematics(hand.tree, request.q_hand.back(), X_HB);
   PerFinger<bool> spare;
   for (int f = 0; f < kNumFingers; ++f) spare[f] = !request.involved[f];
-  return HandDistance(hand, X_HB, motion.X_OF * request.X_HO.inverse(), request.shape, spare, true);
+  const Pose X_OH = request.X_HO.inverse(), X_OH_moved = motion.X_OF * X_OH;
+  const auto distance = [&](const Pose& X, const PerFinger<bool>& fingers, bool palm) {
+    return HandDistance(hand, X_HB, X, request.shape, fingers, palm);
+  };
+  return distance(X_OH_moved, spare, true) >= request.spare_clearance &&
+         distance(X_OH_moved, request.involved, false) >
+             distance(X_OH, request.involved, false) - kDeeper;
 }
 
 // The goal of one free motion: reached, liftable, shakable, clear of the table.
 std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRequest& request,
                             const ReachOptions& options, const FreeMotion& motion,
-                            GoalFaults& faults) {
+                            GoalFaults& faults, std::vector<Pose>& holds) {
   const auto fails = [](int& count) {
     ++count;
     return std::nullopt;
@@ -93,10 +100,9 @@ std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRe
   goal.X_WH = request.X_WO * motion.X_OF * request.X_HO.inverse();
   const double above = HandAboveTable(hand, goal.X_WH, request.q_hand.back(), request.table_height,
                                       request.table_edge);
-  if (above < kLeastClearance) return fails(faults.hand_in_table);
-  if (SpareClearance(hand, request, motion) < request.spare_clearance) {
-    return fails(faults.in_object);
-  }
+  if (above < options.least_clearance) return fails(faults.hand_in_table);
+  if (!ClearOfObject(hand, request, motion)) return fails(faults.in_object);
+  holds.push_back(goal.X_WH);
   ArmIkOptions ik;
   ik.starts = 4;
   const std::optional<Eigen::VectorXd> q =
@@ -123,7 +129,7 @@ std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRe
   }
   goal.score = std::min(margin, kEnoughMargin);
   goal.score -= 0.03 * std::abs(motion.tilt) / 0.35 + 0.03 * std::abs(motion.roll) / 0.35 +
-                0.01 * std::abs(motion.yaw) / std::numbers::pi;
+                0.01 * std::abs(motion.yaw) / std::numbers::pi + 0.5 * std::abs(motion.slide);
   if (request.q_start) goal.score -= 0.05 * (goal.q - *request.q_start).cwiseAbs().maxCoeff();
   goal.score -= 10 * std::max(0.0, options.clearance - std::min(above, forearm));
   return goal;
@@ -136,6 +142,7 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
   plan.yaw = goal.motion.yaw;
   plan.tilt = goal.motion.tilt;
   plan.roll = goal.motion.roll;
+  plan.slide = goal.motion.slide;
   plan.X_WH = request.path(goal.motion.X_OF);
   plan.via_raise =
       RaisePath(hand, request.q_hand, request.table_height, request.table_edge, options.clearance,
@@ -145,7 +152,7 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
     plan.reason = "the end of the reach is out of the arm's reach";
     return false;
   }
-  if (!request.clear(goal.motion.X_OF, plan.X_WH)) {
+  if (!request.clear(plan.X_WH)) {
     plan.reason = "the hand would touch the object on its way";
     return false;
   }
@@ -170,7 +177,7 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
         return false;
       }
     }
-    return request.clear(goal.motion.X_OF, X_WH);
+    return request.clear(X_WH);
   };
   follow.obstacles = [&](const SevenJoints& q, int) { return ObstacleCost(arm, q, request); };
   ReachPath path = FollowReach(arm, follow);
@@ -218,9 +225,9 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
   for (const Eigen::VectorXd& q : plan.lift) {
     plan.limit_margin = std::min(plan.limit_margin, LimitMargin(arm, q));
   }
-  plan.reachable = true;
-  plan.reason.clear();
-  return true;
+  plan.reason = request.refusal ? request.refusal(plan) : "";
+  plan.reachable = plan.reason.empty();
+  return plan.reachable;
 }
 
 // PlanReach within one range of tilts.
@@ -231,7 +238,7 @@ ReachPlan PlanWithin(const Arm& arm, const RobotHand& hand, const ReachRequest& 
   GoalFaults faults;
   for (const FreeMotion& motion : FreeMotions(request, options)) {
     ++plan.candidates;
-    std::optional<Goal> goal = TryGoal(arm, hand, request, options, motion, faults);
+    std::optional<Goal> goal = TryGoal(arm, hand, request, options, motion, faults, plan.holds);
     if (goal) goals.push_back(std::move(*goal));
   }
   plan.goals = static_cast<int>(goals.size());
@@ -264,11 +271,15 @@ ReachPlan PlanReach(const Arm& arm, const RobotHand& hand, const ReachRequest& r
   ThrowUnless(!request.q_hand.empty() && request.path && request.clear,
               "a reach needs the hand's joints, a path of hand poses and what is in its way");
   ReachPlan plan = PlanWithin(arm, hand, request, options);
-  const bool may_tilt = request.tilt_free && request.shape.kind != Shape::Kind::kSphere;
-  if (plan.reachable || !may_tilt || options.last_resort_tilt <= options.max_tilt) return plan;
+  if (!request.tilt_free || request.shape.kind == Shape::Kind::kSphere) return plan;
   ReachOptions wider = options;
-  wider.max_tilt = options.last_resort_tilt;
-  return PlanWithin(arm, hand, request, wider);
+  wider.slide_step = kSlideStep;
+  for (const double tilt : {options.last_resort_tilt, options.any_tilt}) {
+    if (plan.reachable || tilt <= wider.max_tilt) break;
+    wider.max_tilt = tilt;
+    plan = PlanWithin(arm, hand, request, wider);
+  }
+  return plan;
 }
 
 }  // namespace springgrasp

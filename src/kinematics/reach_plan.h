@@ -16,11 +16,13 @@
 
 namespace springgrasp {
 
+struct ReachPlan;
+
 struct ReachRequest {
   Shape shape;
   Pose X_WO = Pose::Identity();         // believed object pose
   Pose X_HO = Pose::Identity();         // object in the robot's hand at contact
-  Pose X_HG = Pose::Identity();         // robot's grasp frame at contact
+  Pose X_HC = Pose::Identity();         // see ContactFrame: tilts are about its x
   bool tilt_free = true;                // fingertip grasps: tilt about the contact line
   double table_height = 0;              // m, world
   double table_edge = -1e9;             // m, W's y where the table begins; nearer, nothing is hit
@@ -39,16 +41,22 @@ struct ReachRequest {
   // The hand's path for an object posed at X_WO * X_OF (F: the free motion of the grasp about the
   // object, identity: as demonstrated). Its last poses must be X_WO * X_OF * X_HO^-1.
   std::function<std::vector<Pose>(const Pose& X_OF)> path;
-  // Whether the object posed at X_WO * X_OF leaves that way free.
-  std::function<bool(const Pose& X_OF, const std::vector<Pose>& X_WH)> clear;
+  // Whether the object leaves that way free.
+  std::function<bool(const std::vector<Pose>& X_WH)> clear;
+  // What else the arm has to be able to do after the lift; empty: it is, else why not. May be null.
+  std::function<std::string(const ReachPlan& plan)> refusal;
 };
 
 struct ReachOptions {
   double yaw_step = 0.17453292519943295;  // rad, 10 degrees
   double max_tilt = 0.3490658503988659;   // rad, 20 degrees
-  // Only where nothing within max_tilt can be reached; the contacts stay as good.
+  // Only where nothing within max_tilt can be reached; the contacts stay as good. Then they may
+  // slide up an upright object too; last, the hand may come from anywhere.
   double last_resort_tilt = 1.0471975511965976;  // rad, 60 degrees
+  double any_tilt = 2.6179938779914944;          // rad, 150 degrees
+  double slide_step = 0;                         // m, 0: contacts do not slide
   double clearance = 0.010;                      // m, of hand and forearm above the table
+  double least_clearance = 0.002;                // m, a goal nearer to the table is not taken
   double lift = 0.15;                            // m
   double shake = 0.020;                          // m, along each axis
   double shake_frequency = 2;                    // Hz
@@ -66,6 +74,7 @@ struct ReachPlan {
   std::string reason;                  // one line when not reachable
   Pose X_OF = Pose::Identity();        // the choice ...
   double yaw = 0, tilt = 0, roll = 0;  // ... by its angles, rad
+  double slide = 0;                    // m, of the contacts along O's z
   std::vector<Pose> X_WH;              // hand path with via height, at dt
   double join = 0;                     // of T: before, the arm comes straight from its start
   std::vector<Eigen::VectorXd> arm;    // joint angles, rad, same samples
@@ -76,15 +85,20 @@ struct ReachPlan {
   double self_clearance = 0;      // m, smallest of arm and rest of the robot, up to 0.05
   double via_raise = 0;           // m, added in the middle of the path
   int candidates = 0, goals = 0;  // tried, and reached at the goal
+  // Hand poses of the widest search that hold the object clear of the table, reached or not.
+  std::vector<Pose> holds;
 };
 
 // Motions F of the hand about O that leave the contacts as good as they are: sphere: turns about
 // the vertical and rolls about G's z; cylinder: turns about its axis; box: half turns about z
 // (quarter turns if square); each with tilts about the contact line: within max_tilt where
-// `tilt_free`, for spheres within last_resort_tilt. The demonstrated one (identity) is first.
+// `tilt_free`, for spheres within last_resort_tilt. Where a hand may tilt, the contacts may also
+// slide along z by multiples of slide_step, to below the upper end. The demonstrated one (identity)
+// is first.
 struct FreeMotion {
   Pose X_OF = Pose::Identity();
   double yaw = 0, tilt = 0, roll = 0;  // rad
+  double slide = 0;                    // m
 };
 std::vector<FreeMotion> FreeMotions(const ReachRequest& request, const ReachOptions& options = {});
 

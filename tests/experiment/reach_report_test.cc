@@ -42,6 +42,27 @@ TEST(ReachReportTest, ThePlatformBringsAnObjectIntoReach) {
   EXPECT_TRUE(MovesIntoReach(scene, {false, false}, ball, {}).empty());
 }
 
+TEST(ReachReportTest, ThePlatformMovesToWhereAGraspHolds) {
+  // A hand from above, fingers down, far to the right.
+  Pose X_WH = Pose::Identity();
+  X_WH.linear().col(0) = -Eigen::Vector3d::UnitZ();
+  X_WH.linear().col(1) = Eigen::Vector3d::UnitX();
+  X_WH.linear().col(2) = -Eigen::Vector3d::UnitY();
+  std::vector<Pose> holds;
+  for (const double yaw : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
+    Pose turned = X_WH;
+    turned.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * X_WH.linear();
+    turned.translation() = Eigen::Vector3d(0.9, 0.45, 1.1);
+    holds.push_back(turned);
+  }
+  const Scene scene = WithBallAt(0.9, 0.45);
+  const std::vector<BasePosture> moves = MovesToHold(scene, {false, true}, holds, 0.1);
+  ASSERT_FALSE(moves.empty());
+  for (const BasePosture& base : moves) EXPECT_GT(base.at("platform_x"), 0);
+  EXPECT_TRUE(MovesToHold(scene, {false, true}, {}, 0.1).empty());
+  EXPECT_TRUE(MovesToHold(scene, {false, false}, holds, 0.1).empty());
+}
+
 TEST(ReachReportTest, AidsAreWhatTheSceneLetsMove) {
   Scene scene = WithBallAt(0.4, 0.5);
   EXPECT_FALSE(AidsOf(scene).torso);

@@ -171,6 +171,17 @@ TEST(ContactPostureTest, TheFrameOfTheGraspPutsTheObjectRight) {
   EXPECT_LT((X_OH.matrix() - posture.X_HO.inverse().matrix()).norm(), 1e-9);
 }
 
+TEST(ContactPostureTest, TheContactFrameLiesAlongTheContactsNotAlongTheDemonstratedOnes) {
+  const ContactRequest request = MakeTurnedPinch(ParseShape("box:0.005x0.06x0.08"), 0.6);
+  const ContactPosture posture = SolveContactPosture(TestRobotHand(), request);
+  const Pose X_OC = posture.X_HO.inverse() * ContactFrame(request.shape, posture);
+  EXPECT_LT((X_OC.linear().col(0) - Eigen::Vector3d::UnitX()).norm(), 1e-6);
+  EXPECT_LT((X_OC.translation() - posture.p_OC[kThumb]).norm(), 1e-9);
+  EXPECT_GT(X_OC.linear().col(2).dot(request.X_OG.linear().col(2)), 0.8);
+  const Pose X_OG = posture.X_HO.inverse() * posture.X_HG;
+  EXPECT_LT(X_OG.linear().col(0).x(), 0.95) << "the case must tell the two frames apart";
+}
+
 TEST(ContactPostureTest, IsTheSameEveryTime) {
   const ContactRequest request = MakeRequest("power", ParseShape("sphere:0.07"), {0, -1, 0});
   const ContactPosture a = SolveContactPosture(TestRobotHand(), request);

@@ -55,4 +55,13 @@ inline ContactRequest MakeRequest(const std::string& type, const Shape& shape,
   return request;
 }
 
+// A pinch of a box that stood turned by `angle` (rad) about z when it was demonstrated: the frame
+// that was learned does not lie along the contacts.
+inline ContactRequest MakeTurnedPinch(const Shape& shape, double angle) {
+  ContactRequest request = MakeRequest("pinch", shape, {0, -0.5, 0.8});
+  request.X_OG.linear() =
+      Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix() * request.X_OG.linear();
+  return request;
+}
+
 }  // namespace springgrasp

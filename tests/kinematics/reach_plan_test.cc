@@ -20,7 +20,7 @@ ReachRequest MakeReach(const std::string& type, const std::string& shape,
   request.X_WO.translation() << place,
       table + 0.5 * request.shape.size.z() + (type == "pinch" ? 0.02 : 0);
   request.X_HO = posture.X_HO;
-  request.X_HG = posture.X_HG;
+  request.X_HC = ContactFrame(request.shape, posture);
   request.tilt_free = type != "power";
   request.table_height = table;
   request.table_edge = 0.41;
@@ -42,7 +42,7 @@ ReachRequest MakeReach(const std::string& type, const std::string& shape,
     }
     return path;
   };
-  request.clear = [](const Pose&, const std::vector<Pose>&) { return true; };
+  request.clear = [](const std::vector<Pose>&) { return true; };
   return request;
 }
 
@@ -106,7 +106,7 @@ TEST(FreeMotionsTest, KeepTheContactsOnTheObject) {
     ReachRequest request;
     request.shape = contact.shape;
     request.X_HO = posture.X_HO;
-    request.X_HG = posture.X_HG;
+    request.X_HC = ContactFrame(request.shape, posture);
     const std::vector<FreeMotion> motions = FreeMotions(request);
     EXPECT_TRUE(motions.front().X_OF.isApprox(Pose::Identity()));
     for (const FreeMotion& motion : motions) {
@@ -117,6 +117,60 @@ TEST(FreeMotionsTest, KeepTheContactsOnTheObject) {
       }
     }
   }
+}
+
+TEST(FreeMotionsTest, TiltsAndSlidesKeepPadsOnTheFacesOfACard) {
+  const ContactRequest contact = MakeTurnedPinch(ParseShape("box:0.005x0.06x0.08"), 0.6);
+  const ContactPosture posture = SolveContactPosture(TestRobotHand(), contact);
+  ReachRequest request;
+  request.shape = contact.shape;
+  request.X_HO = posture.X_HO;
+  request.X_HC = ContactFrame(contact.shape, posture);
+  ReachOptions options;
+  options.max_tilt = options.any_tilt;
+  options.slide_step = 0.01;
+  double highest = 0;
+  for (const FreeMotion& motion : FreeMotions(request, options)) {
+    for (const int f : {kThumb, kIndex}) {
+      const Eigen::Vector3d p = motion.X_OF * posture.p_OC[f];
+      EXPECT_NEAR(std::abs(p.x()), 0.0025 + TestRobotHand().tip_radius, 0.001)
+          << "tilt " << motion.tilt << " slide " << motion.slide;
+      EXPECT_LT(p.z(), 0.04 - 0.01);
+      highest = std::max(highest, p.z());
+    }
+  }
+  EXPECT_GT(highest, 0.015) << "the contacts slide up";
+}
+
+TEST(ReachPlanTest, WhatIsRefusedIsNotTaken) {
+  ReachRequest request = MakeReach("pinch", "sphere:0.04", {0, -0.6, 0.8}, {0.35, 0.45}, 0.85);
+  int asked = 0;
+  request.refusal = [&](const ReachPlan& plan) {
+    EXPECT_FALSE(plan.lift.empty());
+    return asked++ == 0 ? "not this one" : "";
+  };
+  ExpectSound(request, PlanReach(TestArm(), TestRobotHand(), request));
+  EXPECT_EQ(asked, 2);
+  request.refusal = [](const ReachPlan&) { return "none of them"; };
+  const ReachPlan none = PlanReach(TestArm(), TestRobotHand(), request);
+  EXPECT_FALSE(none.reachable);
+  EXPECT_EQ(none.reason, "none of them");
+}
+
+TEST(ReachPlanTest, KeepsTheAskedDistanceFromTheTable) {
+  const ReachRequest request =
+      MakeReach("pinch", "sphere:0.04", {0, -0.6, 0.8}, {0.35, 0.45}, 0.85);
+  const auto above = [&](const Pose& X_WH) {
+    return HandAboveTable(TestRobotHand(), X_WH, request.q_hand.back(), request.table_height,
+                          request.table_edge);
+  };
+  ReachOptions options;
+  options.least_clearance = 0.015;
+  const ReachPlan plan = PlanReach(TestArm(), TestRobotHand(), request, options);
+  ASSERT_TRUE(plan.reachable) << plan.reason;
+  EXPECT_GE(above(plan.X_WH.back()), 0.015);
+  ASSERT_FALSE(plan.holds.empty());
+  for (const Pose& X_WH : plan.holds) EXPECT_GE(above(X_WH), 0.015);
 }
 
 TEST(RaisePathTest, LiftsTheMiddleAndKeepsTheEnds) {
