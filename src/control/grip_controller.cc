@@ -98,6 +98,7 @@ void GripController::Press(const RobotState& state, double dt, HandTarget& targe
       ease * ramp * std::min({task_.max_force, bearable_, force_scale_ * task_.force});
   if (!held_ && pressed_ > settings_.ramp + settings_.settle) {
     held_ = true;
+    reference_ = state.hand_q;  // joints may have given way to their stops
     aperture_ = Aperture();
   }
   if (held_ && eased_ == 0) WatchSlip(state, dt);
@@ -152,7 +153,8 @@ GripTorque GripController::TorqueOf(double force) const {
              : FingertipGripTorque(hand_, tip_frames_, X_HB_, {task_.involved, force, share_});
 }
 
-// What the valves can give at this posture, less what the force's controller may add.
+// What the valves can give at this posture, less what the force's controller may add. A joint that
+// is near enough gives way to its stop, which bears more than any valve.
 double GripController::BearableForce(const RobotState& state) const {
   const ValveVector q = MeanOfValves(model_.layout, state.hand_q);
   const ValveVector per_newton = MeanOfValves(model_.layout, TorqueOf(1).torque);
@@ -163,6 +165,7 @@ double GripController::BearableForce(const RobotState& state) const {
   }
   double force = task_.max_force;
   for (int v = 0; v < kNumValves; ++v) {
+    if (q[v] - model_.lower[v] < settings_.near_stop) continue;
     if (per_newton[v] > 0) force = std::min(force, settings_.bearable * most[v] / per_newton[v]);
   }
   return std::max(force, kLeastForce);

@@ -31,6 +31,13 @@ std::map<std::string, CaseResult> ResultsByCase(const std::vector<StoredTrial>& 
   return cases;
 }
 
+// As a YAML key, whatever the name holds.
+std::string Quoted(const std::string& name) {
+  std::string quoted = "'";
+  for (const char c : name) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  return quoted + "'";
+}
+
 }  // namespace
 
 Expectation ReadExpectation(const std::string& path) {
@@ -59,7 +66,7 @@ std::string RecordExpectation(const std::vector<StoredTrial>& trials) {
     ThrowUnless(c.done == c.planned, "case '{}' has only {} of {} trials; finish the run first",
                 name, c.done, c.planned);
     const double bound = WilsonInterval(c.succeeded, c.done).lower;
-    text += fmt::format("  {}:\n    success_lower_bound: {:.3f}\n", name,
+    text += fmt::format("  {}:\n    success_lower_bound: {:.3f}\n", Quoted(name),
                         std::floor(bound * 1000) / 1000);
     std::string errors;
     for (const char* error : kRecordedErrors) {

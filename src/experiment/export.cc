@@ -39,8 +39,9 @@ std::string ExportCsv(std::vector<StoredTrial> trials, bool timings) {
     for (const auto& [stage, seconds] : trial.result->wall_s) stages.insert(stage);
   }
   std::string csv = "id,case,demonstration,baseline,repetition,seed,outcome,phase,message";
-  for (const std::string& name : names) csv += "," + Quoted(name);
-  for (const std::string& stage : stages) csv += "," + Quoted("wall_" + stage + "_s");
+  for (const std::string& name : names) csv += fmt::format(",{}", Quoted(name));
+  for (const std::string& stage : stages)
+    csv += fmt::format(",{}", Quoted(fmt::format("wall_{}_s", stage)));
   csv += "\n";
   for (const StoredTrial& trial : trials) {
     if (!trial.result) continue;

@@ -30,6 +30,7 @@ constexpr double kReleaseClearance = 0.05;   // m, between object and fingers th
 constexpr double kInset = 0.015;             // m, of a plate, between its edge and the contacts
 constexpr double kSpareClearance = 0.003;    // m, between a plate and what shall not touch it
 constexpr double kSetDownClearance = 0.012;  // m, between table and a hand that sets down
+constexpr double kStartClearance = 0.01;     // m, between object and a robot that begins
 constexpr double kFastest = 1.5;             // s, reach of the robot's arm
 
 // Smallest distance of the open hand from the object over the first `samples` of the way, m.
@@ -44,6 +45,19 @@ double ClearanceOnTheWay(const RobotHand& hand, const Shape& shape, const Pose& 
                                                  {true, true, true, true, true}, true));
   }
   return clearance;
+}
+
+// Whether nothing of the hand, open, and the arm is at the object before they move.
+bool StartsClear(const RobotBody& body, const PlanRequest& request, const Pose& X_WH,
+                 const Eigen::VectorXd& q_open) {
+  std::vector<Pose> X_B;
+  ForwardKinematics(body.hand.tree, q_open, X_B);
+  const Pose& X_WO = request.object.X_WO;
+  const Shape& shape = *request.object.shape;
+  return HandDistance(body.hand, X_B, X_WO.inverse() * X_WH, shape, {true, true, true, true, true},
+                      true) >= kStartClearance &&
+         ArmDistance(body.arm, body.arm_body, request.arm_start, shape, X_WO, X_B) >=
+             kStartClearance;
 }
 
 // Of palm and spare fingers from the object as it lies in the hand, a little less, m.
@@ -173,6 +187,11 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
         DrivesOf(body.hand), body.hand,
         GravityIn(request.object.X_WO * result.posture.X_HO.inverse()),
         OpenedPosture(body.hand, result.posture, generate.shape, closing(motion.involved), 1.0));
+
+    if (!StartsClear(body, request, X_WH_start, q_open)) {
+      result.reason = "the robot would stand in the object's place from the start";
+      return result;
+    }
 
     // The reach of G from where the robot's hand is, for an object turned by what it leaves free.
     const auto path = [&](const Pose& X_OF) {

@@ -70,4 +70,21 @@ double SelfClearance(const Arm& arm, const ArmBody& body, const Eigen::VectorXd&
   return least;
 }
 
+double ArmDistance(const Arm& arm, const ArmBody& body, const Eigen::VectorXd& q,
+                   const Shape& shape, const Pose& X_WO, std::vector<Pose>& X_WB) {
+  Eigen::VectorXd full = arm.q;
+  for (int i = 0; i < arm.num_joints(); ++i) full[arm.joints[i]] = q[i];
+  ForwardKinematics(arm.tree, full, X_WB);
+  const Pose X_OW = X_WO.inverse();
+  const int hand = arm.tree.frames[arm.frame].node;
+  double least = std::numeric_limits<double>::infinity();
+  for (const BodyCapsule& link : body.links) {
+    if (link.node == hand) continue;
+    const Vector3d a = X_OW * (X_WB[link.node] * link.a), b = X_OW * (X_WB[link.node] * link.b);
+    const double about = SignedDistance(shape, 0.5 * (a + b)) - 0.5 * (b - a).norm() - link.radius;
+    if (about < least) least = std::min(least, CapsuleDistance(shape, a, b, link.radius));
+  }
+  return least;
+}
+
 }  // namespace springgrasp

@@ -38,4 +38,9 @@ double SegmentDistance(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const
 double SelfClearance(const Arm& arm, const ArmBody& body, const Eigen::VectorXd& q, double enough,
                      std::vector<Pose>& X_WB);
 
+// Smallest distance between the arm's links, without the hand, and a shape at X_WO, m; negative:
+// they overlap. `X_WB`: scratch.
+double ArmDistance(const Arm& arm, const ArmBody& body, const Eigen::VectorXd& q,
+                   const Shape& shape, const Pose& X_WO, std::vector<Pose>& X_WB);
+
 }  // namespace springgrasp

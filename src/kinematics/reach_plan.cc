@@ -17,6 +17,7 @@ namespace {
 constexpr double kEnoughMargin = 0.25;     // of half a joint's range; more is no better
 constexpr double kLeastClearance = 0.002;  // m, a way nearer to the table is not taken
 constexpr double kFar = 0.05;              // m, what is farther off is as good as far
+constexpr double kArmClearance = 0.005;    // m, of the arm beside the object
 constexpr double kDeeper = 0.001;          // m, that a finger may enter more than as planned
 constexpr double kSlideStep = 0.0125;      // m
 constexpr double kNearCost = 10;           // per second, of a posture that touches
@@ -26,6 +27,12 @@ double SelfClearanceOf(const Arm& arm, const Eigen::VectorXd& q, const ReachRequ
   if (request.body == nullptr) return kFar;
   std::vector<Pose> X_WB;
   return SelfClearance(arm, *request.body, q, kFar, X_WB);
+}
+
+bool ArmClearOfObject(const Arm& arm, const Eigen::VectorXd& q, const ReachRequest& request) {
+  if (request.body == nullptr) return true;
+  std::vector<Pose> X_WB;
+  return ArmDistance(arm, *request.body, q, request.shape, request.X_WO, X_WB) >= kArmClearance;
 }
 
 // Cost per second of an arm posture near the table or the robot itself.
@@ -173,7 +180,8 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
               kLeastClearance ||
           ForearmAboveTable(arm, q[k], request.table_height, request.table_edge) <
               kLeastClearance ||
-          SelfClearanceOf(arm, q[k], request) < kLeastClearance) {
+          SelfClearanceOf(arm, q[k], request) < kLeastClearance ||
+          !ArmClearOfObject(arm, q[k], request)) {
         return false;
       }
     }
@@ -183,6 +191,11 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
   ReachPath path = FollowReach(arm, follow);
   if (!path.complete) {
     plan.reason = path.reason;
+    return false;
+  }
+  for (const Eigen::VectorXd& q : path.q) {
+    if (ArmClearOfObject(arm, q, request)) continue;
+    plan.reason = "the arm would touch the object on its way";
     return false;
   }
   plan.X_WH = path.X_WH;
