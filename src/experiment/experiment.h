@@ -33,6 +33,9 @@ struct CaseDemonstration {
   std::string kind = "synthesised";  // synthesised | recorded | library: learned already
   std::string file;   // recorded: one CSV; library: a grasp YAML, empty: the shipped one ...
   std::string match;  // ... or all of the experiment's folder that match this glob pattern
+  // Library: the grasp at `part` (0 to 1) of the way to this other one; empty: the first itself.
+  std::string blend;
+  double part = 0.5;
 };
 
 // `key=value` with a dotted path into the scene's YAML. `{depth}` in a value stands for the

@@ -135,10 +135,17 @@ void UseLibrary(const Experiment& e, const ExperimentCase& c, TrialSpec& spec) {
   spec.demonstration = "library";
   spec.grasp_file = file.empty() ? (fs::path(ShippedLibrary()) / (c.grasp_type + ".yaml")).string()
                                  : FindNamed(file, e, "models/grasps");
-  const Grasp grasp = ReadGrasp(spec.grasp_file);
-  ThrowUnless(grasp.type == c.grasp_type, "{}: a {} grasp, but case '{}' of {} is a {}",
-              spec.grasp_file, grasp.type, c.name, e.source, c.grasp_type);
   spec.grasp_hash = Hash(spec.grasp_file);
+  std::string nearer = spec.grasp_file;
+  if (!c.demonstration.blend.empty()) {
+    spec.blend_file = FindNamed(c.demonstration.blend, e, "models/grasps");
+    spec.blend_part = c.demonstration.part;
+    spec.grasp_hash += fmt::format(" {} of the way to {}", spec.blend_part, Hash(spec.blend_file));
+    if (spec.blend_part >= 0.5) nearer = spec.blend_file;
+  }
+  const std::string type = ReadGrasp(nearer).type;
+  ThrowUnless(type == c.grasp_type, "{}: a {} grasp, but case '{}' of {} is a {}", nearer, type,
+              c.name, e.source, c.grasp_type);
   const std::string shown = DemonstrationOfEntry(spec.grasp_file);
   const std::vector<std::string>& b = e.baselines;
   std::error_code ignored;

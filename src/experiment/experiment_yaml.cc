@@ -46,6 +46,11 @@ CaseDemonstration ReadCaseDemonstration(YamlReader yaml) {
   yaml.Read("kind", d.kind, {"synthesised", "recorded", "library"});
   yaml.Read("file", d.file);
   yaml.Read("match", d.match);
+  yaml.Read("blend", d.blend);
+  ThrowUnless(d.blend.empty() || d.kind == "library",
+              "{}: blend is between grasps of the library, but kind is {}", yaml.Where("blend"),
+              d.kind);
+  yaml.Read("part", d.part, {0, 1});
   ThrowUnless(d.kind != "synthesised" || (d.file.empty() && d.match.empty()),
               "{}: file and match are for recorded demonstrations, but kind is synthesised",
               yaml.Where("kind"));

@@ -16,6 +16,8 @@
 #include "experiment/observe.h"
 #include "experiment/perform_grasp.h"
 #include "experiment/trial_observe.h"
+#include "grasp/blend.h"
+#include "grasp/generate.h"
 #include "grasp/learn.h"
 #include "grasp/library.h"
 #include "grasp/shown_reach.h"
@@ -161,6 +163,13 @@ struct LearnedGrasp {
 
 LearnedGrasp FromLibrary(const TrialSpec& spec) {
   LearnedGrasp learned{ReadGrasp(spec.grasp_file), {}};
+  if (!spec.blend_file.empty()) {
+    const std::optional<Shape>& shape = spec.scene.objects[0].shape;
+    ThrowUnless(shape.has_value(), "{}: grasps meet on a shape, but the object has none",
+                spec.scene.source);
+    learned.grasp = BlendGrasps(learned.grasp, ReadGrasp(spec.blend_file), spec.blend_part, *shape,
+                                GenerateOptions().tip_radius);
+  }
   const std::string shown = DemonstrationOfEntry(spec.grasp_file);
   std::error_code ignored;
   if (std::filesystem::exists(shown, ignored)) learned.demonstration = ReadDemonstration(shown);

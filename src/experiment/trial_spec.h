@@ -30,7 +30,9 @@ struct TrialSpec {
   // Entry of the library that is performed, its demonstration (.csv) beside it; empty: the trial
   // sees a demonstration and learns from it.
   std::string grasp_file;
-  std::string grasp_hash;         // of the entry and its demonstration
+  std::string blend_file;         // the grasp is that at blend_part of the way to this; or empty
+  double blend_part = 0;          // 0..1
+  std::string grasp_hash;         // of all these files, with the part
   std::string baseline = "none";  // one of kBaselines: what moves the fingers in the springs' place
   std::uint64_t seed = 0;         // of the experiment; streams: MakeStream(seed, repetition, name)
   int repetition = 0;

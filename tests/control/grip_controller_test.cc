@@ -18,14 +18,14 @@ struct Grip {
   GripTask task;
   RobotState state;
   HandTarget reference;
-  explicit Grip(double force) {
+  explicit Grip(double force, double q = 0.4) {
     task.involved = {true, true, false, false, false};
     task.force = force;
     task.max_force = 5;
-    state.hand_q = HandVector::Constant(11, 0.4);
+    state.hand_q = HandVector::Constant(11, q);
     state.hand_qd = state.hand_bias = HandVector::Zero(11);
     for (int v = 0; v < kNumValves; ++v) {
-      state.pressure[v] = model.return_stiffness[v] * 0.6 / model.torque_per_bar[v];
+      state.pressure[v] = model.return_stiffness[v] * (q + 0.2) / model.torque_per_bar[v];
     }
     reference.q = state.hand_q;
   }
@@ -102,7 +102,7 @@ TEST(GripControllerTest, PostureIsHeldAcrossTheGripFromTheFirstTouchOn) {
 }
 
 TEST(GripControllerTest, NoMoreForceIsAskedForThanTheValvesCanGive) {
-  Grip grip(3);
+  Grip grip(3, 0.6);
   grip.model.torque_per_bar *= 0.4;
   grip.state.pressure /= 0.4;
   GripController controller(grip.model, grip.hand, {0, 1, 2, 3, 4}, grip.task);
@@ -112,6 +112,18 @@ TEST(GripControllerTest, NoMoreForceIsAskedForThanTheValvesCanGive) {
   EXPECT_GT(controller.target_force()[kThumb], 0.5);
   EXPECT_LT(grip.state.pressure.maxCoeff(), kMaxPressureBar);
   EXPECT_NEAR(controller.SensedForce()[kThumb], controller.target_force()[kThumb], 0.1);
+}
+
+TEST(GripControllerTest, ButWhereTheirStopsAreNearTheseBearIt) {
+  for (const double q : {0.3, 0.6}) {
+    Grip grip(3, q);
+    grip.model.torque_per_bar *= 0.4;
+    grip.state.pressure /= 0.4;
+    GripController controller(grip.model, grip.hand, {0, 1, 2, 3, 4}, grip.task);
+    grip.Run(controller, GripStage::kFree, 0.5);
+    grip.Run(controller, GripStage::kPressing, 4);
+    EXPECT_EQ(controller.target_force()[kThumb] > 2.999, q < GripSettings().near_stop);
+  }
 }
 
 TEST(GripControllerTest, FingersThatComeCloserThanTheyHeldRegripHarderUpToTheLimit) {

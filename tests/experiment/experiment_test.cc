@@ -105,6 +105,26 @@ TEST(ExperimentTest, EveryCaseIsTriedUnderEveryCondition) {
   EXPECT_THAT(message("[arm]", "[legs]"), HasSubstr("finger_joints"));
 }
 
+TEST(ExperimentTest, AGraspBetweenTwoOfTheLibraryIsOfTheNearersType) {
+  const TemporaryFolder folder;
+  const auto text = [](const std::string& type, const std::string& part) {
+    return "name: between\nseed: 1\ncases:\n"
+           "  - {name: a, scene: scene.yaml, grasp: " +
+           type +
+           ", demonstration: {kind: library, file: power.yaml, blend: tripod.yaml, part: " + part +
+           "}}\n";
+  };
+  const auto some = ExpandExperiment(SmallExperiment(folder, text("power", "0.25")));
+  EXPECT_EQ(some[0].spec.blend_part, 0.25);
+  EXPECT_NE(some[0].id, ExpandExperiment(SmallExperiment(folder, text("power", "0.3")))[0].id);
+  EXPECT_EQ(ExpandExperiment(SmallExperiment(folder, text("tripod", "0.75"))).size(), 1u);
+  const auto message = [&](const std::string& type, const std::string& part) {
+    return MessageOf([&] { ExpandExperiment(SmallExperiment(folder, text(type, part))); });
+  };
+  EXPECT_THAT(message("power", "0.75"), HasSubstr("a tripod grasp"));
+  EXPECT_THAT(message("power", "1.5"), HasSubstr("part is 1.5"));
+}
+
 constexpr const char* kSampled =
     "name: sampled\nseed: 1\nrepetitions: 200\ncases:\n"
     "  - name: c\n    scene: scene.yaml\n    grasp: pinch\n    sampling: random\n"

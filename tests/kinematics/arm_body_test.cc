@@ -78,6 +78,36 @@ TEST(ArmBodyTest, TellsCollisionsOfTheArmAsTheEngineDoes) {
   EXPECT_GE(agree, kPostures * 97 / 100);
 }
 
+TEST(ArmBodyTest, AnObjectIsAsFarFromTheArmAsFromItsNearestLink) {
+  const auto model = LoadModel("armar3b/armar3b.xml");
+  const std::unique_ptr<mjData, decltype(&mj_deleteData)> data(mj_makeData(model.get()),
+                                                               mj_deleteData);
+  mj_forward(model.get(), data.get());
+  const Arm& arm = TestArm();
+  const ArmBody body = ArmBodyOf(arm, *model, *data);
+  const Shape ball = ParseShape("sphere:0.04");
+  const Eigen::VectorXd q = HomePosture(arm);
+  Eigen::VectorXd full = arm.q;
+  for (int i = 0; i < arm.num_joints(); ++i) full[arm.joints[i]] = q[i];
+  std::vector<Pose> X_WB, scratch;
+  ForwardKinematics(arm.tree, full, X_WB);
+  const int hand = arm.tree.frames[arm.frame].node;
+  RandomEngine engine = MakeStream(3, 0, "objects");
+  for (int n = 0; n < 200; ++n) {
+    Pose X_WO = Pose::Identity();
+    X_WO.translation() =
+        0.5 * AnyPoint(engine) + FramePose(arm.tree, X_WB, arm.frame).translation();
+    double nearest = 10;
+    for (const BodyCapsule& link : body.links) {
+      if (link.node == hand) continue;
+      const Pose& X = X_WB[link.node];
+      const Vector3d p = X_WO.translation();
+      nearest = std::min(nearest, SegmentDistance(X * link.a, X * link.b, p, p) - link.radius);
+    }
+    EXPECT_NEAR(ArmDistance(arm, body, q, ball, X_WO, scratch), nearest - 0.02, 1e-3);
+  }
+}
+
 TEST(ArmBodyTest, TheHomePostureIsClear) {
   const auto model = LoadModel("armar3b/armar3b.xml");
   const std::unique_ptr<mjData, decltype(&mj_deleteData)> data(mj_makeData(model.get()),
