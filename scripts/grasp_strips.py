@@ -15,7 +15,7 @@ import matplotlib.pyplot as plt
 
 PROGRAM = "build/release/bin/springgrasp"
 PARTS = [0.05, 0.4, 0.65, 0.85, 1.0]  # of the reach
-SCENES = {"power": "power_cylinder", "pinch": "pinch_ball", "tripod": "tripod_cylinder"}
+SCENES = {"power": "power_cylinder", "pinch": "pinch_ball", "tripod": "tripod_cylinder", "lateral": "lateral_plate"}
 PERFORMED = [*PARTS, "hold"]
 
 
