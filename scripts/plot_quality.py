@@ -96,13 +96,14 @@ def main():
         ax.set_xlabel("of the lost above the threshold", fontsize=8)
         lines.append(f"| {kind} | {len(held)}, {len(lost)} | " + " | ".join(cells) + " |")
     axes[0][0].set_ylabel("of the held above the threshold", fontsize=8)
-    axes[0][-1].legend(fontsize=7, loc="lower right")
+    handles, names = axes[0][0].get_legend_handles_labels()
+    figure.legend(handles, names, fontsize=8, ncol=len(names), loc="upper center")
     text = "\n".join(lines) + "\n"
     print(text, end="")
     if options.table:
         pathlib.Path(options.table).write_text(text)
     if options.figure:
-        figure.tight_layout()
+        figure.tight_layout(rect=(0, 0, 1, 0.93))
         figure.savefig(options.figure)
 
 
