@@ -42,4 +42,20 @@ HandReference HandReferenceAt(const std::vector<HandVector>& path, double dt, do
   return reference;
 }
 
+ArmVector LoadTorque(const Arm& arm, const ArmVector& q, const Pose& X_HO, double mass) {
+  constexpr double kGravity = 9.81;  // m/s^2
+  // The rest of the robot may have joints too, which carry it by themselves.
+  Eigen::VectorXd full = arm.q;
+  for (int i = 0; i < arm.num_joints(); ++i) full[arm.joints[i]] = q[i];
+  std::vector<Pose> X_WB;
+  ForwardKinematics(arm.tree, full, X_WB);
+  Eigen::MatrixXd J(6, arm.tree.num_joints());
+  FrameJacobian(arm.tree, X_WB, arm.frame, J);
+  const Eigen::Vector3d lever = FramePose(arm.tree, X_WB, arm.frame).linear() * X_HO.translation();
+  const Eigen::Vector3d force(0, 0, mass * kGravity);
+  const Eigen::VectorXd torque =
+      J.topRows<3>().transpose() * force + J.bottomRows<3>().transpose() * lever.cross(force);
+  return torque(arm.joints);
+}
+
 }  // namespace springgrasp

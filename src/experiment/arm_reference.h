@@ -3,7 +3,9 @@
 
 #include <vector>
 
+#include "base/pose.h"
 #include "control/arm_controller.h"
+#include "kinematics/arm_ik.h"
 
 namespace springgrasp {
 
@@ -16,5 +18,8 @@ struct HandReference {
   HandVector q, qd, qdd;  // rad, rad/s, rad/s^2
 };
 HandReference HandReferenceAt(const std::vector<HandVector>& path, double dt, double t);
+
+// Torques (Nm) that carry `mass` (kg) at X_HO in the hand, J' (m g), at arm angles `q`.
+ArmVector LoadTorque(const Arm& arm, const ArmVector& q, const Pose& X_HO, double mass);
 
 }  // namespace springgrasp

@@ -2,6 +2,12 @@
 
 namespace springgrasp {
 
+double WeightError(const ContactWindow& window, const Eigen::Matrix3d& R_WH, double weight) {
+  Eigen::Vector3d f_H = window.palm_f_H;
+  for (const Eigen::Vector3d& f : window.f_H) f_H += f;
+  return (R_WH * f_H - Eigen::Vector3d(0, 0, weight)).norm() / weight;
+}
+
 ContactAccumulator::ContactAccumulator(const std::vector<GeomRole>& roles, int object_body)
     : roles_(roles), body_(object_body) {}
 

@@ -37,6 +37,10 @@ struct ContactWindow {
   }
 };
 
+// Mean contact forces of a hand (R_WH) at rest against the object's true weight (N), as a fraction
+// of it.
+double WeightError(const ContactWindow& window, const Eigen::Matrix3d& R_WH, double weight);
+
 // Collects contacts of one object over time steps.
 class ContactAccumulator {
  public:

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
-#include "control/grip.h"
 #include "experiment/arm_reference.h"
+#include "experiment/grip_task.h"
 #include "experiment/place_held.h"
 #include "experiment/trial_watch.h"
 #include "kinematics/mirror.h"
@@ -17,45 +17,10 @@
 namespace springgrasp {
 namespace {
 
-constexpr double kGravity = 9.81;  // m/s^2
-constexpr double kMinRise = 0.5;   // of the lift height, that the object must have risen
-// Of max_finger_force, for all fingers of a power grasp together: the thumb bears what they press
-// and the load (tuned with experiments/grip, seeds 1 and 11).
-constexpr double kEnclosingShare = 0.65;
+constexpr double kGravity = 9.81;     // m/s^2
+constexpr double kMinRise = 0.5;      // of the lift height, that the object must have risen
 constexpr double kLateReach = 0.8;    // of T, from where on the hand must be where it is wanted
 constexpr double kGripWindow = 0.25;  // s, to see whether a finger touches at the end of grip
-
-PerFinger<int> TipFrames(const KinematicTree& hand) {
-  PerFinger<int> frames;
-  for (int f = 0; f < kNumFingers; ++f) {
-    frames[f] = hand.FrameIndex(fmt::format("hand_r_{}_tip", kFingerNames[f]));
-  }
-  return frames;
-}
-
-PneumaticHandModel BelievedHand(const HandLayout& layout, const PerformOptions& options) {
-  const PneumaticHandModel model(layout);
-  if (options.pneumatics.model_error == 0) return model;
-  RandomEngine engine = options.actuation;
-  return WithErrors(model, options.pneumatics.model_error, engine);
-}
-
-GripTask Task(const GraspPlan& plan, const RobotHand& hand, const PerformOptions& options) {
-  const GripOptions& grip = options.grip;
-  GripTask task;
-  task.enclosing = plan.type == "power";
-  task.involved = plan.involved;
-  // The index withstands along its joints' axes.
-  if (plan.type == "lateral") task.push_H = -hand.R_HA.col(1);
-  // The thumb of an enclosing hand bears what all others press, and the load.
-  task.max_force = (task.enclosing ? kEnclosingShare : 1) * options.max_finger_force;
-  task.force = std::max(
-      task.enclosing ? grip.min_enclosing_force
-      : task.push_H  ? grip.min_key_force
-                     : grip.min_force,
-      GripForceFor(plan.mass, plan.friction, grip.acceleration, grip.safety, task.max_force));
-  return task;
-}
 
 // One trial under way: references, controllers, bookkeeping.
 class Performer {
@@ -78,7 +43,7 @@ class Performer {
         nominal_hand_(robot.layout()),
         drives_(options.pneumatics, simulation.timestep(), options.actuation),
         grip_(BelievedHand(robot.layout(), options), body.hand.tree, tip_frames_,
-              Task(plan, body.hand, options), options.grip.settings),
+              GripTaskOf(plan, body.hand, options), options.grip.settings),
         watch_(simulation, robot, object_, criteria_, performance_) {}
 
   Performance Run() {
@@ -89,23 +54,6 @@ class Performer {
   }
 
  private:
-  // Torques that carry the believed load: J' (m g) at the object's place in the hand.
-  ArmVector LoadTorque(const RobotState& state) const {
-    // The rest of the robot may have joints too, which carry it by themselves.
-    Eigen::VectorXd q = arm_.q;
-    for (int i = 0; i < arm_.num_joints(); ++i) q[arm_.joints[i]] = state.arm_q[i];
-    std::vector<Pose> X_WB;
-    ForwardKinematics(arm_.tree, q, X_WB);
-    Eigen::MatrixXd J(6, arm_.tree.num_joints());
-    FrameJacobian(arm_.tree, X_WB, arm_.frame, J);
-    const Eigen::Vector3d lever =
-        FramePose(arm_.tree, X_WB, arm_.frame).linear() * plan_.X_HO.translation();
-    const Eigen::Vector3d force(0, 0, plan_.mass * kGravity);
-    const Eigen::VectorXd torque =
-        J.topRows<3>().transpose() * force + J.bottomRows<3>().transpose() * lever.cross(force);
-    return torque(arm_.joints);
-  }
-
   // One control and simulation step. `load` in [0, 1] scales the carried load. Returns false when
   // the trial is over.
   bool Step(const ArmTarget& arm_target, const HandReference& hand, GripStage stage, double load) {
@@ -119,7 +67,8 @@ class Performer {
     drives_.Sense(state);
     RobotCommand command;
     ArmTarget target = arm_target;
-    if (load > 0) target.feedforward_torque = load * LoadTorque(state);
+    if (load > 0)
+      target.feedforward_torque = load * LoadTorque(arm_, state.arm_q, plan_.X_HO, plan_.mass);
     command.arm_torque = ControlArm(options_.arm, target, state, dt, arm_memory_);
     HandTarget hand_target;
     hand_target.q = hand_planned_ = hand.q;
@@ -305,21 +254,14 @@ class Performer {
     performance_.creep = (watch_.ObjectInHand().translation() - p_HO_quiet).norm() /
                          std::max(0.1, criteria_.hold - quiet);
     performance_.hold = watch_.window().Mean();
-    performance_.weight_error = WeightError(performance_.hold);
+    performance_.weight_error =
+        WeightError(performance_.hold, robot_.HandPose(simulation_).linear(),
+                    simulation_.model().body_subtreemass[object_] * kGravity);
     for (int f = 0; f < kNumFingers; ++f) {
       performance_.force_target[f] = force_window_.target[f] / std::max(1, force_window_.count);
       performance_.force_sensed[f] = force_window_.sensed[f] / std::max(1, force_window_.count);
     }
     return true;
-  }
-
-  // Mean contact forces of a hand at rest against the object's true weight, as a fraction of it.
-  double WeightError(const ContactWindow& window) const {
-    Eigen::Vector3d f_H = window.palm_f_H;
-    for (const Eigen::Vector3d& f : window.f_H) f_H += f;
-    const double weight = simulation_.model().body_subtreemass[object_] * kGravity;
-    const Eigen::Vector3d f_W = robot_.HandPose(simulation_).linear() * f_H;
-    return (f_W - Eigen::Vector3d(0, 0, weight)).norm() / weight;
   }
 
   bool Disturb() {

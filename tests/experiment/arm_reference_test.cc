@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "kinematics/test_arm.h"
+
 namespace springgrasp {
 namespace {
 
@@ -32,6 +34,22 @@ TEST(ArmReferenceTest, HandAnglesAreInterpolated) {
   EXPECT_NEAR(HandReferenceAt(path, 0.1, 0.025).q[2], 0.25, 1e-12);
   EXPECT_EQ(HandReferenceAt(path, 0.1, 9).q[2], 1);
   EXPECT_EQ(HandReferenceAt(path, 0.1, 9).qd[2], 0);
+}
+
+TEST(ArmReferenceTest, TheLoadsTorqueIsTheGradientOfItsPotentialEnergy) {
+  const Arm& arm = TestArm();
+  const ArmVector q = HomePosture(arm);
+  Pose X_HO = Pose::Identity();
+  X_HO.translation() = Eigen::Vector3d(0.1, 0.02, -0.03);
+  const auto energy = [&](const ArmVector& at) {
+    return 0.3 * 9.81 * (HandPose(arm, at) * X_HO).translation().z();
+  };
+  const ArmVector torque = LoadTorque(arm, q, X_HO, 0.3);
+  EXPECT_GT(torque.norm(), 0.1);
+  for (int i = 0; i < arm.num_joints(); ++i) {
+    const ArmVector step = 1e-5 * ArmVector::Unit(i);
+    EXPECT_NEAR(torque[i], (energy(q + step) - energy(q - step)) / 2e-5, 1e-6) << i;
+  }
 }
 
 }  // namespace
