@@ -31,11 +31,20 @@ struct ContactSense {
 void SenseContacts(const PneumaticHandModel& model, const ContactSettings& settings,
                    const RobotState& state, bool free, double dt, ContactSense& sense);
 
-// Force (N) of each finger's pad along the unit vector `axis_H`, from the sensed torques of a hand
-// whose bodies stand at X_HB: the joints feel only its part in the plane in which the finger bends,
-// which is taken to be the projection of a force along the axis.
-PerFinger<double> PadForcesAlong(const HandLayout& layout, const KinematicTree& hand,
+// Force (N) of each finger's pad along its unit vector `direction_H`, from the sensed torques of a
+// hand with joint angles `q` (rad) whose bodies stand at X_HB: the joints feel only its part in the
+// plane in which the finger bends, which is taken to be the projection of a force along the
+// direction. A joint at the end of its range tells nothing, as the stop bears some of the force;
+// NaN where both are, or where the other hardly feels the force.
+PerFinger<double> PadForcesAlong(const PneumaticHandModel& model, const KinematicTree& hand,
                                  const PerFinger<int>& tip_frames, const std::vector<Pose>& X_HB,
-                                 const ValveVector& torque, const Eigen::Vector3d& axis_H);
+                                 const HandVector& q, const ValveVector& torque,
+                                 const PerFinger<Eigen::Vector3d>& direction_H);
+
+// The forces of an opposing grip with those that are not known (NaN) taken from balance: thumb and
+// other fingers that are `involved` press alike. `fallback` (N, of each finger) where that does not
+// tell either.
+PerFinger<double> BalancedForces(PerFinger<double> force, const PerFinger<bool>& involved,
+                                 const PerFinger<double>& fallback);
 
 }  // namespace springgrasp

@@ -24,7 +24,8 @@ GripController::GripController(const PneumaticHandModel& model, const KinematicT
 
 ValveVector GripController::Control(const RobotState& state, const HandTarget& reference,
                                     GripStage stage, double dt) {
-  ForwardKinematics(hand_, state.hand_q, X_HB_);
+  q_ = state.hand_q;
+  ForwardKinematics(hand_, q_, X_HB_);
   const PerFinger<bool> touched = sense_.touching;
   SenseContacts(model_, settings_.contact, state, stage == GripStage::kFree, dt, sense_);
   HandTarget target = reference;
@@ -216,14 +217,21 @@ PerFinger<double> GripController::SensedForce() const {
     ++count;
   }
   const Eigen::Vector3d p_thumb = FramePose(hand_, X_HB_, tip_frames_[kThumb]).translation();
-  Eigen::Vector3d axis = (others / std::max(1, count) - p_thumb).normalized();
-  if (task_.push_H) axis = *task_.push_H;
-  sensed = PadForcesAlong(model_.layout, hand_, tip_frames_, X_HB_, sense_.torque, axis);
+  const Eigen::Vector3d axis = (others / std::max(1, count) - p_thumb).normalized();
+  PerFinger<Eigen::Vector3d> pushes = task_.pushes_H;
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (task_.push_H) pushes[f] = *task_.push_H;
+    if (pushes[f].isZero()) pushes[f] = f == kThumb ? axis : Eigen::Vector3d(-axis);
+  }
+  sensed = PadForcesAlong(model_, hand_, tip_frames_, X_HB_, q_, sense_.torque, pushes);
   for (int f = 0; f < kNumFingers; ++f) {
     if (!Presses(f)) sensed[f] = 0;
-    if (f != kThumb) sensed[f] = -sensed[f];
   }
-  return sensed;
+  if (task_.push_H) {
+    if (std::isnan(sensed[kThumb])) sensed[kThumb] = target_force_[kThumb];
+    return sensed;
+  }
+  return BalancedForces(sensed, task_.involved, target_force_);
 }
 
 }  // namespace springgrasp

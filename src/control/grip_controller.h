@@ -51,12 +51,21 @@ struct GripSettings {
   double regrip_pause = 0.15;                // s
 };
 
+inline PerFinger<Eigen::Vector3d> NoDirections() {
+  PerFinger<Eigen::Vector3d> none;
+  none.fill(Eigen::Vector3d::Zero());
+  return none;
+}
+
 struct GripTask {
   bool enclosing = false;
   PerFinger<bool> involved = {};
   // Lateral: where the thumb pushes in H, unit. The other involved fingers keep their planned
   // posture; their sides withstand it.
   std::optional<Eigen::Vector3d> push_H;
+  // Fingertip grips: where each involved pad is believed to push, unit, in H; zero: along the
+  // grip's axis, from the thumb to the mean of the others and back.
+  PerFinger<Eigen::Vector3d> pushes_H = NoDirections();
   double force = 3;      // N, of the thumb
   double max_force = 5;  // N, of any finger
 };
@@ -81,7 +90,7 @@ class GripController {
   bool held() const { return held_; }
   int regrips() const { return regrips_; }
   const PerFinger<bool>& touching() const { return sense_.touching; }
-  // Asked for, and as the robot feels it along the grip's axis, in the last call; N.
+  // Asked for, and as the robot feels it where each pad pushes, in the last call; N.
   const PerFinger<double>& target_force() const { return target_force_; }
   PerFinger<double> SensedForce() const;
 
@@ -111,6 +120,7 @@ class GripController {
   const GripSettings settings_;
   PerFinger<int> knuckles_ = {};  // bodies that the proximal joints turn
   std::vector<Pose> X_HB_;        // at the posture of the last call
+  HandVector q_;                  // rad, that posture
   HandControlState memory_;
   ContactSense sense_;
   HandVector touched_;                           // rad, where each touching finger stopped

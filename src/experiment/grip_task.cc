@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "control/grip.h"
+#include "grasp/object_contacts.h"
 
 namespace springgrasp {
 namespace {
@@ -12,6 +13,19 @@ namespace {
 // Of max_finger_force, for all fingers of a power grasp together: the thumb bears what they press
 // and the load (tuned with experiments/grip, seeds 1 and 11).
 constexpr double kEnclosingShare = 0.65;
+
+// Against the surface that each planned pad touches, in H; in a grip of two along its axis, which
+// is where their forces must balance.
+PerFinger<Eigen::Vector3d> PushesOf(const GraspPlan& plan) {
+  PerFinger<Eigen::Vector3d> pushes = NoDirections();
+  if (plan.p_WF.empty() || std::ranges::count(plan.involved, true) <= 2) return pushes;
+  const Pose X_OW = (plan.X_WH.back() * plan.X_HO).inverse();
+  for (int f = 0; f < kNumFingers; ++f) {
+    if (!plan.involved[f]) continue;
+    pushes[f] = -(plan.X_HO.linear() * OutwardNormal(plan.shape, X_OW * plan.p_WF.back()[f]));
+  }
+  return pushes;
+}
 
 }  // namespace
 
@@ -22,6 +36,7 @@ GripTask GripTaskOf(const GraspPlan& plan, const RobotHand& hand, const PerformO
   task.involved = plan.involved;
   // The index withstands along its joints' axes.
   if (plan.type == "lateral") task.push_H = -hand.R_HA.col(1);
+  if (!task.enclosing && !task.push_H) task.pushes_H = PushesOf(plan);
   // The thumb of an enclosing hand bears what all others press, and the load.
   task.max_force = (task.enclosing ? kEnclosingShare : 1) * options.max_finger_force;
   task.force = std::max(

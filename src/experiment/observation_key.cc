@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "base/yaml_reader.h"
+#include "experiment/trial_identity.h"
 
 namespace springgrasp {
 
@@ -24,6 +25,14 @@ std::string LearningKey(const TrialSpec& spec) {
   return fmt::format("{} {} {} {} {}\n{}", spec.grasp_type, spec.dim, spec.profile,
                      spec.baseline == "open_hand", fmt::join(spec.substitute, ","),
                      ObservationKey(spec));
+}
+
+std::string PlanKey(const TrialSpec& spec) {
+  TrialSpec planned = spec;
+  for (const char* key : {"physics", "pneumatics"}) {
+    planned.scene_text = RemoveKey(planned.scene_text, key);
+  }
+  return CanonicalText(planned);
 }
 
 }  // namespace springgrasp

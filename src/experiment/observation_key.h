@@ -1,4 +1,4 @@
-// What an observation depends on, so that trials which share one need it but once.
+// What an observation and a plan depend on, so that trials which share one need it but once.
 #pragma once
 
 #include <string>
@@ -13,5 +13,9 @@ std::string ObservationKey(const TrialSpec& spec);
 
 // Likewise for what is learned from it.
 std::string LearningKey(const TrialSpec& spec);
+
+// Equal for two trials if and only if they differ at most in physics and drives, which no plan
+// knows.
+std::string PlanKey(const TrialSpec& spec);
 
 }  // namespace springgrasp

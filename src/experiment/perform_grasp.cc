@@ -18,6 +18,17 @@
 namespace springgrasp {
 namespace {
 
+// The block that an object stands on.
+Obstacle PedestalOf(const Scene& scene, int object) {
+  const SceneObject& o = scene.objects[object];
+  Obstacle block;
+  block.shape = {Shape::Kind::kBox, o.pedestal};
+  block.X_WS.linear() = Eigen::AngleAxisd(o.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  block.X_WS.translation() = ObjectStartPose(scene, object).translation();
+  block.X_WS.translation().z() = scene.table.height + o.pedestal.z() / 2;
+  return block;
+}
+
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 void RecordPlan(const PlanResult& plan, TrialResult& result) {
@@ -108,9 +119,9 @@ std::vector<Grasp> ShippedGrasps() {
   return grasps;
 }
 
-// From the scene's start posture. `holds`: see PlanResult.
+// From the scene's start posture, the `posture`th that is tried.
 TrialResult PerformFrom(const Grasp& grasp, const Scene& scene, const PerformGraspOptions& options,
-                        std::vector<Pose>* holds = nullptr) {
+                        PlanMemory& plans, int posture, std::vector<Pose>* holds = nullptr) {
   TrialResult result;
   BuildOptions build;
   build.with_looks = false;
@@ -134,14 +145,21 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene, const PerformGra
   if (body.mirrored && request.place) request.place->x() *= -1;
   request.table_height = scene.table.height;
   request.table_edge = scene.table.position.y() - scene.table.size.y() / 2;
+  if (scene.objects[0].pedestal.z() > 0) {
+    Obstacle pedestal = PedestalOf(scene, 0);
+    if (body.mirrored) pedestal.X_WS = MirroredObjectPose(pedestal.X_WS);
+    request.obstacles.push_back(pedestal);
+  }
   request.arm_start = robot.Read(simulation).arm_q;
   request.criteria = options.criteria;
   request.object_centre = options.object_centre;
   request.baseline = options.baseline;
-  if (request.baseline && request.baseline->name == "synergies") {
-    request.baseline->synergies = FindSynergies(body, ShippedGrasps());
-  }
-  PlanResult plan = PlanGrasp(body, grasp, request);
+  PlanResult plan = plans.Get(options.plan_key, posture, [&] {
+    if (request.baseline && request.baseline->name == "synergies") {
+      request.baseline->synergies = FindSynergies(body, ShippedGrasps());
+    }
+    return PlanGrasp(body, grasp, request);
+  });
   RecordPlan(plan, result);
   if (holds != nullptr && !body.mirrored) *holds = plan.holds;
   if (!plan.plan) {
@@ -199,8 +217,15 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene, const PerformGra
 
 TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
                          const PerformGraspOptions& options) {
+  PlanMemory plans;
+  return PerformGrasp(grasp, scene, options, plans);
+}
+
+TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene, const PerformGraspOptions& options,
+                         PlanMemory& plans) {
+  int posture = 0;
   std::vector<Pose> holds;
-  const TrialResult result = PerformFrom(grasp, scene, options, &holds);
+  const TrialResult result = PerformFrom(grasp, scene, options, plans, posture, &holds);
   const ReachAids aids = AidsOf(scene);
   if (result.outcome != Outcome::kUnreachable || !(aids.torso || aids.platform)) return result;
   Scene believed = scene;
@@ -211,7 +236,7 @@ TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
   for (const BasePosture& base : bases) {
     Scene moved = scene;
     for (const auto& [joint, value] : base) moved.start[joint] = value;
-    TrialResult again = PerformFrom(grasp, moved, options);
+    TrialResult again = PerformFrom(grasp, moved, options, plans, ++posture);
     if (again.outcome == Outcome::kUnreachable) continue;
     for (const auto& [joint, value] : base) again.values["start_" + joint] = value;
     return again;

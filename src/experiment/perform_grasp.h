@@ -6,6 +6,7 @@
 
 #include "experiment/perform.h"
 #include "experiment/plan_grasp.h"
+#include "experiment/plan_memory.h"
 #include "experiment/trial_result.h"
 #include "experiment/trial_spec.h"
 #include "grasp/grasp.h"
@@ -28,12 +29,17 @@ struct PerformGraspOptions {
   bool annotate = false;   // contact forces and fingertips drawn into the video
   std::string trajectory;  // .csv of what the robot did, if not empty
   std::string motion;      // .csv of the generated fingertip motion, if not empty
+  std::string plan_key;    // of all that is planned from; empty: no plan is kept
 };
 
 // `scene`: poses drawn already; the first object is grasped. Where it is out of reach and the scene
 // lets torso or platform move (`torso: free`; `platform` active), the robot stands as
 // MovesIntoReach says from the start, recorded as start_<joint>. Fills outcome, message, phase and
-// the values of planning and physics of the result; never throws for what physics does.
+// the values of planning and physics of the result, from a plan of `plans` where
+// it has that; never throws for what physics does.
+TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene, const PerformGraspOptions& options,
+                         PlanMemory& plans);
+// Likewise, keeping no plan.
 TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
                          const PerformGraspOptions& options);
 

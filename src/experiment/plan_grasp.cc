@@ -27,7 +27,7 @@ constexpr double kWay = 0.72;                // of T, then the object enters the
 constexpr double kBlocked = -0.01;           // m, less than this on the way: another pose is tried
 constexpr double kWaitClearance = 0.015;     // m, between object and waiting fingers
 constexpr double kReleaseClearance = 0.05;   // m, between object and fingers that let go
-constexpr double kInset = 0.015;             // m, of a plate, between its edge and the contacts
+constexpr double kInset = 0.026;             // m, of a plate, between its edge and the contacts
 constexpr double kSpareClearance = 0.003;    // m, between a plate and what shall not touch it
 constexpr double kSetDownClearance = 0.012;  // m, between table and a hand that sets down
 constexpr double kStartClearance = 0.01;     // m, between object and a robot that begins
@@ -194,6 +194,7 @@ ReachRequest RequestReach(const Planning& p, const Hold& hold, const Eigen::Vect
                               : std::min(kSpareClearance, SpareDistance(hand, p.shape(), hold));
   reach.table_height = p.request.table_height;
   reach.table_edge = p.request.table_edge;
+  reach.obstacles = p.request.obstacles;
   reach.body = &p.body.arm_body;
   reach.q_start = p.request.arm_start;
   reach.dt = p.generate.dt;

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "experiment/finger_baseline.h"
 #include "experiment/grasp_plan.h"
@@ -11,6 +12,7 @@
 #include "grasp/fingertip_motion.h"
 #include "grasp/grasp.h"
 #include "kinematics/contact_posture.h"
+#include "kinematics/reach_plan.h"
 #include "sim/scene.h"
 
 namespace springgrasp {
@@ -19,6 +21,7 @@ struct PlanRequest {
   BelievedObject object;                    // its shape must be known
   double table_height = 0;                  // m
   double table_edge = -1e9;                 // m, W's y where the table begins
+  std::vector<Obstacle> obstacles;          // fixed things on it
   ArmVector arm_start = ArmVector::Zero();  // rad
   TrialCriteria criteria;                   // lift and shake are planned too
   double dt = 0.005;                        // s

@@ -38,6 +38,8 @@ ContactPosture SolveHangingPosture(const RobotHand& hand, const ContactRequest& 
 Hold PlanHold(const RobotBody& body, const HumanHand& human, const Grasp& grasp,
               const GenerateOptions& generate) {
   constexpr double kOpen = 1;  // m, off the object: as far as the joints go
+  // rad, off their stops: a finger that brushes a cylinder on the way yields.
+  constexpr double kYielding = 0.06;
   Hold hold;
   hold.motion = GenerateMotion(grasp, generate);
   hold.closing = grasp.type == "lateral" ? PerFinger<bool>{true} : hold.motion.involved;
@@ -48,6 +50,13 @@ Hold PlanHold(const RobotBody& body, const HumanHand& human, const Grasp& grasp,
   hold.q_open = HangingPosture(DrivesOf(body.hand), body.hand,
                                GravityIn(generate.X_WO * hold.posture.X_HO.inverse()),
                                OpenedHold(body.hand, hold, generate.shape, kOpen));
+  if (grasp.type == "power") {
+    for (int f = kIndex; f < kNumFingers; ++f) {
+      for (const int j : {body.hand.fingers[f].j0, body.hand.fingers[f].j1}) {
+        hold.q_open[j] = std::max(hold.q_open[j], body.hand.tree.lower[j] + kYielding);
+      }
+    }
+  }
   return hold;
 }
 

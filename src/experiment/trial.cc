@@ -241,7 +241,8 @@ TrialResult RunToPerform(TrialMemory& memory, const TrialSpec& spec, const Trial
           DemonstratedTips(*learned->demonstration, learned->grasp, kPlaybackSteps);
     }
   }
-  TrialResult performed = PerformGrasp(learned->grasp, scene, perform);
+  perform.plan_key = PlanKey(spec);
+  TrialResult performed = PerformGrasp(learned->grasp, scene, perform, memory.plans);
   result.outcome = performed.outcome;
   result.message = performed.message;
   result.phase = performed.phase;

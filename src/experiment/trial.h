@@ -5,6 +5,7 @@
 
 #include "base/last_value.h"
 #include "demonstration/demonstration.h"
+#include "experiment/plan_memory.h"
 #include "experiment/trial_result.h"
 #include "experiment/trial_spec.h"
 #include "grasp/grasp.h"
@@ -23,6 +24,7 @@ struct SeenDemonstration {
 struct TrialMemory {
   LastValue<SeenDemonstration> seen;
   LastValue<Grasp> grasp;
+  PlanMemory plans;
 };
 
 // Deterministic in `spec`; neither what is recorded nor what `memory` holds changes a result. Files

@@ -18,6 +18,7 @@ constexpr double kEnoughMargin = 0.25;     // of half a joint's range; more is n
 constexpr double kLeastClearance = 0.002;  // m, a way nearer to the table is not taken
 constexpr double kFar = 0.05;              // m, what is farther off is as good as far
 constexpr double kArmClearance = 0.005;    // m, of the arm beside the object
+constexpr double kSeatClearance = 0.004;   // m, of the hand beside what the object stands on
 constexpr double kDeeper = 0.001;          // m, that a finger may enter more than as planned
 constexpr double kSlideStep = 0.0125;      // m
 constexpr double kNearCost = 10;           // per second, of a posture that touches
@@ -45,6 +46,20 @@ double ObstacleCost(const Arm& arm, const Eigen::VectorXd& q, const ReachRequest
   return kNearCost * near * near;
 }
 
+bool HandClearOfObstacles(const RobotHand& hand, const Pose& X_WH, const Eigen::VectorXd& q_hand,
+                          const ReachRequest& request) {
+  if (request.obstacles.empty()) return true;
+  constexpr PerFinger<bool> kAll = {true, true, true, true, true};
+  std::vector<Pose> X_HB;
+  ForwardKinematics(hand.tree, q_hand, X_HB);
+  for (const Obstacle& o : request.obstacles) {
+    if (HandDistance(hand, X_HB, o.X_WS.inverse() * X_WH, o.shape, kAll, true) < kSeatClearance) {
+      return false;
+    }
+  }
+  return true;
+}
+
 struct Goal {
   FreeMotion motion;
   Pose X_WH = Pose::Identity();
@@ -61,7 +76,7 @@ Pose Moved(const Pose& X_WH, const Eigen::Vector3d& by_W) {
 // Why hand poses were no goal, counted.
 struct GoalFaults {
   int hand_in_table = 0, out_of_reach = 0, forearm_in_table = 0, no_lift = 0, no_shake = 0;
-  int in_object = 0;
+  int in_object = 0, in_obstacle = 0;
 };
 
 std::string Describe(const GoalFaults& faults) {
@@ -72,6 +87,7 @@ std::string Describe(const GoalFaults& faults) {
   add(faults.out_of_reach, "out of the arm's reach");
   add(faults.hand_in_table, "with the hand in the table");
   add(faults.in_object, "with palm or spare fingers in the object");
+  add(faults.in_obstacle, "with the hand in what the object stands on");
   add(faults.forearm_in_table, "with the forearm in the table");
   add(faults.no_lift, "that cannot be lifted");
   add(faults.no_shake, "that cannot be shaken");
@@ -109,6 +125,9 @@ std::optional<Goal> TryGoal(const Arm& arm, const RobotHand& hand, const ReachRe
                                       request.table_edge);
   if (above < options.least_clearance) return fails(faults.hand_in_table);
   if (!ClearOfObject(hand, request, motion)) return fails(faults.in_object);
+  if (!HandClearOfObstacles(hand, goal.X_WH, request.q_hand.back(), request)) {
+    return fails(faults.in_obstacle);
+  }
   holds.push_back(goal.X_WH);
   ArmIkOptions ik;
   ik.starts = 4;
@@ -181,6 +200,7 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
           ForearmAboveTable(arm, q[k], request.table_height, request.table_edge) <
               kLeastClearance ||
           SelfClearanceOf(arm, q[k], request) < kLeastClearance ||
+          !HandClearOfObstacles(hand, X_WH[k], q_hand, request) ||
           !ArmClearOfObject(arm, q[k], request)) {
         return false;
       }
@@ -196,6 +216,12 @@ bool PlanPath(const Arm& arm, const RobotHand& hand, const ReachRequest& request
   for (const Eigen::VectorXd& q : path.q) {
     if (ArmClearOfObject(arm, q, request)) continue;
     plan.reason = "the arm would touch the object on its way";
+    return false;
+  }
+  for (std::size_t k = 0; k < path.q.size(); ++k) {
+    const Eigen::VectorXd& q_hand = request.q_hand[std::min(k, request.q_hand.size() - 1)];
+    if (HandClearOfObstacles(hand, path.X_WH[k], q_hand, request)) continue;
+    plan.reason = "the hand would touch what the object stands on";
     return false;
   }
   plan.X_WH = path.X_WH;

@@ -18,14 +18,21 @@ namespace springgrasp {
 
 struct ReachPlan;
 
+// Something fixed beside the table that the hand must keep off, such as what the object stands on.
+struct Obstacle {
+  Shape shape;
+  Pose X_WS = Pose::Identity();
+};
+
 struct ReachRequest {
   Shape shape;
-  Pose X_WO = Pose::Identity();         // believed object pose
-  Pose X_HO = Pose::Identity();         // object in the robot's hand at contact
-  Pose X_HC = Pose::Identity();         // see ContactFrame: tilts are about its x
-  bool tilt_free = true;                // fingertip grasps: tilt about the contact line
-  double table_height = 0;              // m, world
-  double table_edge = -1e9;             // m, W's y where the table begins; nearer, nothing is hit
+  Pose X_WO = Pose::Identity();  // believed object pose
+  Pose X_HO = Pose::Identity();  // object in the robot's hand at contact
+  Pose X_HC = Pose::Identity();  // see ContactFrame: tilts are about its x
+  bool tilt_free = true;         // fingertip grasps: tilt about the contact line
+  double table_height = 0;       // m, world
+  double table_edge = -1e9;      // m, W's y where the table begins; nearer, nothing is hit
+  std::vector<Obstacle> obstacles;
   double dt = 0.005;                    // s
   double T = 1;                         // s, contact
   std::vector<Eigen::VectorXd> q_hand;  // hand joints at the path's samples, rad
