@@ -85,6 +85,7 @@ class Run {
     while (true) {
       stop = stop || options_.stop_requested();
       if (!stop) FeedWorkers();
+      StoreReceived();
       if (CountBusy() == 0) break;
       Wait();
     }
@@ -148,9 +149,17 @@ class Run {
       const int trial = worker->running();
       std::optional<TrialResult> result;
       if (fd->revents != 0) result = worker->Receive();
-      if (result && trial >= 0) Store(trials_[static_cast<std::size_t>(trial)], *result);
+      if (result && trial >= 0) received_.emplace_back(trial, std::move(*result));
       worker = worker->alive() ? std::next(worker) : workers_.erase(worker);
     }
+  }
+
+  // While the workers are at their next trials: the disk takes its time.
+  void StoreReceived() {
+    for (const auto& [trial, result] : received_) {
+      Store(trials_[static_cast<std::size_t>(trial)], result);
+    }
+    received_.clear();
   }
 
   void Store(const PlannedTrial& trial, const TrialResult& result) {
@@ -180,6 +189,7 @@ class Run {
   std::string log_;
   std::deque<int> queue_;  // trials still to start
   std::list<Worker> workers_;
+  std::vector<std::pair<int, TrialResult>> received_;  // trials and what came of them
   RunProgress progress_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   WithoutSigpipe without_sigpipe_;

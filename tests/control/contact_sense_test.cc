@@ -102,7 +102,7 @@ TEST(ContactSenseTest, AJointAtItsStopDoesNotSpoilTheForceThatTheOtherFeels) {
   const KinematicTree tree = FlatHand();
   HandVector q = HandVector::Constant(11, 0.6);
   q[4] = model.upper[4];
-  const Eigen::Vector3d axis = Eigen::Vector3d(0.3, 0, -1).normalized();
+  const Eigen::Vector3d axis = Eigen::Vector3d(-1, 0, -0.3).normalized();
   std::vector<Pose> X;
   ForwardKinematics(tree, q, X);
   Eigen::MatrixXd J(6, 11);

@@ -32,6 +32,17 @@ TEST(PerformGraspTest, AFilmedTrialIsTheSameToTheBit) {
   EXPECT_EQ(plain.values, seen.values);
 }
 
+// Softer contacts leave the plan as it was; a robot that believes in another place plans anew.
+TEST(PerformGraspTest, AKeptPlanChangesNoResult) {
+  PlanMemory plans;
+  Trial trial;
+  trial.options.plan_key = "as shipped";
+  PerformGrasp(trial.grasp, trial.scene, trial.options, plans);
+  trial.scene.physics.solref = {0.02, 1};
+  const TrialResult kept = PerformGrasp(trial.grasp, trial.scene, trial.options, plans);
+  EXPECT_EQ(kept.values, trial.Run().values);
+}
+
 TEST(PerformGraspTest, TheHandWithAnOppositionJointRunsTheSameChain) {
   Trial trial;
   trial.scene.hand = "opposition";

@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <string>
 
+#include "kinematics/shape_distance.h"
 #include "posture_requests.h"
 #include "test_arm.h"
 
@@ -171,6 +173,27 @@ TEST(ReachPlanTest, KeepsTheAskedDistanceFromTheTable) {
   EXPECT_GE(above(plan.X_WH.back()), 0.015);
   ASSERT_FALSE(plan.holds.empty());
   for (const Pose& X_WH : plan.holds) EXPECT_GE(above(X_WH), 0.015);
+}
+
+// A knob beside the ball, where the little finger of a hand that is planned without it would be.
+TEST(ReachPlanTest, KeepsTheHandOffWhatStandsBesideTheObject) {
+  ReachRequest request = MakeReach("pinch", "sphere:0.04", {0, -0.6, 0.8}, {0.35, 0.45}, 0.85);
+  const ReachPlan free = PlanReach(TestArm(), TestRobotHand(), request);
+  ASSERT_TRUE(free.reachable) << free.reason;
+  Obstacle knob{ParseShape("sphere:0.02"), Pose::Identity()};
+  std::vector<Pose> X_HB;
+  ForwardKinematics(TestRobotHand().tree, request.q_hand.back(), X_HB);
+  const LinkCapsule& link = *std::ranges::find(TestRobotHand().capsules, 4, &LinkCapsule::finger);
+  knob.X_WS.translation() = free.X_WH.back() * (X_HB[link.node] * link.a);
+  request.obstacles.push_back(knob);
+  const auto distance = [&](const Pose& X_WH) {
+    return HandDistance(TestRobotHand(), X_HB, knob.X_WS.inverse() * X_WH, knob.shape,
+                        {true, true, true, true, true}, true);
+  };
+  EXPECT_LT(distance(free.X_WH.back()), 0);
+  const ReachPlan around = PlanReach(TestArm(), TestRobotHand(), request);
+  ExpectSound(request, around);
+  for (const Pose& X_WH : around.X_WH) EXPECT_GT(distance(X_WH), 0);
 }
 
 TEST(RaisePathTest, LiftsTheMiddleAndKeepsTheEnds) {
