@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Picture strips of grasps: a row for each case of a run, its first success replayed.
+"""Picture strips of grasps: a row for each case of a run, its first success; replayed if it was not filmed.
 
 Usage: scripts/success_strips.py RESULTS [RESULTS ...] -o strips.png [--program build/release/bin/springgrasp]
 """
@@ -33,9 +33,11 @@ def main():
         rows = []
         for folder in options.results:
             for case, trial in first_successes(folder).items():
-                video = pathlib.Path(scratch) / f"{len(rows)}.mp4"
-                subprocess.run([options.program, "replay", folder, trial, "--video", str(video)], check=True)
-                row = video.with_suffix(".png")
+                video = pathlib.Path(folder) / "trials" / trial / "grasp.mp4"
+                if not video.exists():
+                    video = pathlib.Path(scratch) / f"{len(rows)}.mp4"
+                    subprocess.run([options.program, "replay", folder, trial, "--video", str(video)], check=True)
+                row = pathlib.Path(scratch) / f"{len(rows)}.png"
                 inputs = [part for t in TIMES for part in ("-ss", str(t), "-i", str(video))]
                 crop = "".join(f"[{i}:v]crop=iw/2:ih:iw/2:0,scale={WIDTH}:-1[p{i}];" for i in range(len(TIMES)))
                 stack = "".join(f"[p{i}]" for i in range(len(TIMES))) + f"hstack={len(TIMES)}"
