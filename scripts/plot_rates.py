@@ -5,8 +5,9 @@ Usage: scripts/plot_rates.py RESULTS [--table t.md] [--figure f.png] [--paired W
 
 Rates with their 95 % Wilson intervals, the outcomes of what was lost, medians of what was measured.
 --paired baselines: each baseline against the springs, same draws. --paired first: each case
-"GRASP, NAME" against the first case of its GRASP. Differences of paired rates with the interval of
-Agresti and Min, Statistics in Medicine 24 (2005), 729: half a trial added to each cell.
+"GRASP, NAME" against the first case of its GRASP, which has a row of bars in the figure. Differences
+of paired rates with the interval of Agresti and Min, Statistics in Medicine 24 (2005), 729: half a
+trial added to each cell.
 --sizes: the figure shows success over the object's smallest width, one line per case.
 """
 import argparse
@@ -169,6 +170,29 @@ def draw_bars(conditions, path):
     fig.savefig(path)
 
 
+def draw_settings(conditions, path):
+    """Cases "GRASP, NAME": a row of bars for each grasp above the same names."""
+    grasps = list(dict.fromkeys(c.case.split(", ", 1)[0] for c in conditions))
+    names = list(dict.fromkeys(c.case.split(", ", 1)[-1] for c in conditions))
+    fig, axes = plt.subplots(len(grasps), 1, sharex=True, squeeze=False, dpi=120,
+                             figsize=(max(5.0, 0.62 * len(names)), 0.9 + 1.15 * len(grasps)))
+    for grasp, ax in zip(grasps, axes[:, 0]):
+        mine = [c for c in conditions if c.case.split(", ", 1)[0] == grasp]
+        x = [names.index(c.case.split(", ", 1)[-1]) for c in mine]
+        y = [c.successes / c.n for c in mine]
+        bounds = [wilson(c.successes, c.n) for c in mine]
+        error = [[max(0.0, v - b[0]) for v, b in zip(y, bounds)], [max(0.0, b[1] - v) for v, b in zip(y, bounds)]]
+        ax.bar(x, y, 0.75, yerr=error, capsize=3)
+        ax.set_ylim(0, 1.04)
+        ax.set_yticks([0, 0.5, 1])
+        ax.set_ylabel(grasp)
+        ax.grid(axis="y", alpha=0.3)
+    axes[-1, 0].set_xticks(range(len(names)))
+    axes[-1, 0].set_xticklabels(names, rotation=40, ha="right", fontsize=8)
+    fig.tight_layout()
+    fig.savefig(path)
+
+
 def draw_sizes(conditions, path):
     lines = collections.defaultdict(list)
     for c in conditions:
@@ -212,7 +236,8 @@ def main():
     if options.table:
         pathlib.Path(options.table).write_text(text)
     if options.figure:
-        (draw_sizes if options.sizes else draw_bars)(conditions, options.figure)
+        draw = draw_sizes if options.sizes else draw_settings if options.paired == "first" else draw_bars
+        draw(conditions, options.figure)
 
 
 if __name__ == "__main__":
