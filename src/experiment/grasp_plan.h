@@ -7,6 +7,7 @@
 #include "base/fingers.h"
 #include "base/pose.h"
 #include "base/shape.h"
+#include "control/grip_controller.h"
 #include "control/robot_state.h"
 
 namespace springgrasp {
@@ -31,6 +32,8 @@ struct GraspPlan {
   std::vector<ArmVector> retreat;  // rad, from there out of the object's way
   HandVector released;             // rad, the hand that lets go
   Pose X_HO = Pose::Identity();    // object in the robot's hand at contact
+  // Outward normals of the surface where involved pads touch, in the hand.
+  PerFinger<Eigen::Vector3d> n_HC = NoDirections();
 };
 
 }  // namespace springgrasp

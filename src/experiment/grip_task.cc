@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "control/grip.h"
-#include "grasp/object_contacts.h"
 
 namespace springgrasp {
 namespace {
@@ -18,11 +17,9 @@ constexpr double kEnclosingShare = 0.65;
 // is where their forces must balance.
 PerFinger<Eigen::Vector3d> PushesOf(const GraspPlan& plan) {
   PerFinger<Eigen::Vector3d> pushes = NoDirections();
-  if (plan.p_WF.empty() || std::ranges::count(plan.involved, true) <= 2) return pushes;
-  const Pose X_OW = (plan.X_WH.back() * plan.X_HO).inverse();
+  if (std::ranges::count(plan.involved, true) <= 2) return pushes;
   for (int f = 0; f < kNumFingers; ++f) {
-    if (!plan.involved[f]) continue;
-    pushes[f] = -(plan.X_HO.linear() * OutwardNormal(plan.shape, X_OW * plan.p_WF.back()[f]));
+    if (plan.involved[f]) pushes[f] = -plan.n_HC[f];
   }
   return pushes;
 }

@@ -9,6 +9,7 @@
 #include "experiment/grasp_requests.h"
 #include "experiment/place_plan.h"
 #include "experiment/plan_hold.h"
+#include "grasp/object_contacts.h"
 #include "kinematics/hand_motion.h"
 #include "kinematics/reach_plan.h"
 #include "kinematics/shape_distance.h"
@@ -318,6 +319,10 @@ PlanResult PlanAtThisSpeed(const Planning& p, const Hold& hold) {
     PerFinger<Eigen::Vector3d> tips = TipPositions(hand, q_hand[i]);
     for (Eigen::Vector3d& tip : tips) tip = planned.X_WH[i] * tip;
     plan.p_WF.push_back(tips);
+  }
+  const Pose X_OW = (plan.X_WH.back() * plan.X_HO).inverse();
+  for (int f = 0; f < kNumFingers; ++f) {
+    plan.n_HC[f] = plan.X_HO.linear() * OutwardNormal(plan.shape, X_OW * plan.p_WF.back()[f]);
   }
   return result;
 }
