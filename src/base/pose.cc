@@ -44,6 +44,18 @@ Eigen::Quaterniond ExpRotation(const Eigen::Vector3d& w) {
   return q.normalized();
 }
 
+Pose Interpolate(const Pose& a, const Pose& b, double u) {
+  return MakePose((1 - u) * a.translation() + u * b.translation(),
+                  Eigen::Quaterniond(a.linear()).slerp(u, Eigen::Quaterniond(b.linear())));
+}
+
+Pose PoseAlong(const std::vector<Pose>& path, double index) {
+  const std::size_t last = path.size() - 1;
+  const double s = std::clamp(index, 0.0, static_cast<double>(last));
+  const auto i = static_cast<std::size_t>(s);
+  return Interpolate(path[i], path[std::min(i + 1, last)], s - static_cast<double>(i));
+}
+
 double RotationDistance(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
   return LogRotation(a.conjugate() * b).norm();
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <vector>
 
 namespace springgrasp {
 
@@ -24,6 +25,11 @@ Eigen::Quaterniond ExpRotation(const Eigen::Vector3d& w);
 
 // Angle between two rotations, in [0, pi] (rad).
 double RotationDistance(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
+
+// Between two poses: straight, turning evenly; u in [0, 1].
+Pose Interpolate(const Pose& a, const Pose& b, double u);
+// On a path of poses (not empty) at a fraction of an index; before and after it, its ends.
+Pose PoseAlong(const std::vector<Pose>& path, double index);
 
 // Right-handed frame whose x is along `x` and whose z is the part of `z_hint` orthogonal to x.
 // Throws Error if x is zero or z_hint is parallel to it.

@@ -44,9 +44,7 @@ HandMotionSample Interpolated(const HandMotion& motion, double t) {
   result = w < 0.5 ? a : b;
   result.t = t;
   result.q = (1 - w) * a.q + w * b.q;
-  const Eigen::Quaterniond Ra(a.X_WH.linear()), Rb(b.X_WH.linear());
-  result.X_WH =
-      MakePose((1 - w) * a.X_WH.translation() + w * b.X_WH.translation(), Ra.slerp(w, Rb));
+  result.X_WH = Interpolate(a.X_WH, b.X_WH, w);
   if (w > 1e-9) {
     result.wrist_recorded = a.wrist_recorded && b.wrist_recorded;
     for (int f = 0; f < kNumFingers; ++f) result.recorded[f] = a.recorded[f] && b.recorded[f];

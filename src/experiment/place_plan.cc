@@ -50,14 +50,7 @@ PlacePlan PlanPlace(const Arm& arm, const PlaceRequest& request) {
   const Eigen::VectorXd away = EvenTimes(request.criteria.retreat, dt);
   for (const double t : away) {
     const double at = last * (1 - (1 - kAway) * MinimumJerkPosition(t / request.criteria.retreat));
-    const auto i = static_cast<std::size_t>(at);
-    const Pose& a = request.X_WH[i];
-    const Pose& b = request.X_WH[std::min(i + 1, request.X_WH.size() - 1)];
-    const double u = at - static_cast<double>(i);
-    back.push_back(
-        to_place *
-        MakePose((1 - u) * a.translation() + u * b.translation(),
-                 Eigen::Quaterniond(a.linear()).slerp(u, Eigen::Quaterniond(b.linear()))));
+    back.push_back(to_place * PoseAlong(request.X_WH, at));
   }
   const ArmPath retreat = TrackArmPath(arm, back, plan.arm.back(), kBigStep);
   if (!retreat.complete) {

@@ -23,11 +23,6 @@ double MixGain(double a, double b, double s) {
   return a > 0 && b > 0 ? std::exp(Mix(std::log(a), std::log(b), s)) : Mix(a, b, s);
 }
 
-Pose MixPose(const Pose& a, const Pose& b, double s) {
-  return MakePose(Mix(Vector3d(a.translation()), Vector3d(b.translation()), s),
-                  Quaterniond(a.linear()).slerp(s, Quaterniond(b.linear())));
-}
-
 // Between two places seen from the object's centre: about it, not through it.
 Vector3d MixAround(const Vector3d& a, const Vector3d& b, double s) {
   if (a.norm() < 1e-6 || b.norm() < 1e-6) return Mix(a, b, s);
@@ -90,7 +85,7 @@ PoseDmp MixReach(const PoseDmp& from, const PoseDmp& to, const Pose& X_OG, doubl
   reach.R_ref = Quaterniond(X_OG.linear());
   reach.motion.g.setZero();
   const Pose X_GStart =
-      MixPose(goal_a.inverse() * StartPose(from), goal_b.inverse() * StartPose(to), s);
+      Interpolate(goal_a.inverse() * StartPose(from), goal_b.inverse() * StartPose(to), s);
   return WithEndpoints(reach, X_OG * X_GStart, X_OG);
 }
 
@@ -148,9 +143,9 @@ Grasp BlendGrasps(const Grasp& from, const Grasp& to, double s, const Shape& sha
   grasp.quality = {};
   grasp.hand_length = Mix(a.hand_length, b.hand_length, s);
   // In the hand, whose fingers stay about it.
-  grasp.X_OH = MixPose(a.X_OH.inverse(), b.X_OH.inverse(), s).inverse();
-  grasp.X_HG = MixPose(a.X_HG, b.X_HG, s);
-  grasp.X_HP = MixPose(a.X_HP, b.X_HP, s);
+  grasp.X_OH = Interpolate(a.X_OH.inverse(), b.X_OH.inverse(), s).inverse();
+  grasp.X_HG = Interpolate(a.X_HG, b.X_HG, s);
+  grasp.X_HP = Interpolate(a.X_HP, b.X_HP, s);
   grasp.scales = {MixGain(a.scales.T, b.scales.T, s), MixGain(a.scales.A, b.scales.A, s),
                   MixGain(a.scales.x0, b.scales.x0, s)};
   grasp.mass = MixGain(a.mass, b.mass, s);

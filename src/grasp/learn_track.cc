@@ -113,15 +113,6 @@ double SamplePeriod(const Demonstration& demonstration) {
   return Median(steps);
 }
 
-// Pose between even samples.
-Pose Between(const std::vector<Pose>& X, double position) {
-  const auto n = std::min(static_cast<std::size_t>(std::max(position, 0.0)), X.size() - 1);
-  const auto m = std::min(n + 1, X.size() - 1);
-  const double fraction = std::clamp(position - static_cast<double>(n), 0.0, 1.0);
-  return MakePose((1 - fraction) * X[n].translation() + fraction * X[m].translation(),
-                  Quaterniond(X[n].linear()).slerp(fraction, Quaterniond(X[m].linear())));
-}
-
 }  // namespace
 
 HandTrack MakeHandTrack(const Demonstration& demonstration, double most_hand_cutoff) {
@@ -199,7 +190,7 @@ HandTrack MakeHandTrack(const Demonstration& demonstration, double most_hand_cut
     for (std::size_t k = 0; k < tips[i].t.size(); ++k) {
       const double t = tips[i].t[k] - track.t0;
       p_HF.t.push_back(tips[i].t[k]);
-      p_HF.x.push_back(Between(track.X_WH, t / track.dt).inverse() * tips[i].x[k]);
+      p_HF.x.push_back(PoseAlong(track.X_WH, t / track.dt).inverse() * tips[i].x[k]);
       while (track.sample_t[row] < t) ++row;
       track.sample_p_HF[row][i] = p_HF.x.back();
     }
