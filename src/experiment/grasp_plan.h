@@ -1,6 +1,8 @@
 // COMMANDS: what the robot is going to do, planned before the trial starts.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -35,5 +37,12 @@ struct GraspPlan {
   // Outward normals of the surface where involved pads touch, in the hand.
   PerFinger<Eigen::Vector3d> n_HC = NoDirections();
 };
+
+// The planned hand pose of the reach at time t (s), between its samples; before and after, its
+// ends.
+Pose PlannedHandPose(const GraspPlan& plan, double t);
+
+// The planned fingertip of one sample of the reach, in H.
+Eigen::Vector3d PlannedTipInHand(const GraspPlan& plan, std::size_t sample, int finger);
 
 }  // namespace springgrasp

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "experiment/arm_reference.h"
+#include "experiment/force_window.h"
 #include "experiment/grip_task.h"
 #include "experiment/place_held.h"
 #include "experiment/trial_watch.h"
@@ -58,9 +59,9 @@ class Performer {
   // the trial is over.
   bool Step(const ArmTarget& arm_target, const HandReference& hand, GripStage stage, double load) {
     const double dt = simulation_.timestep();
-    if (options_.exact_arm) robot_.MoveArm(arm_target.q, arm_target.qd, simulation_);
-    if (options_.exact_fingers && stage == GripStage::kFree) {
-      robot_.MoveHand(hand.q, hand.qd, simulation_);
+    if (stage == GripStage::kFree) {
+      if (options_.exact_arm) robot_.MoveArm(arm_target.q, arm_target.qd, simulation_);
+      if (options_.exact_fingers) robot_.MoveHand(hand.q, hand.qd, simulation_);
     }
     RobotState state = robot_.Read(simulation_);
     const ValveVector pressure = state.pressure;
@@ -87,12 +88,7 @@ class Performer {
     for (int f = 0; f < kNumFingers; ++f) {
       performance_.largest_force[f] = std::max(performance_.largest_force[f], load_now.normal[f]);
     }
-    ++force_window_.count;
-    const PerFinger<double> sensed = grip_.SensedForce();
-    for (int f = 0; f < kNumFingers; ++f) {
-      force_window_.target[f] += grip_.target_force()[f];
-      force_window_.sensed[f] += sensed[f];
-    }
+    force_window_.Add(grip_.target_force(), grip_.SensedForce());
     Sample(state, command);
     if (observer_) observer_(simulation_, performance_.reached);
     return !watch_.over();
@@ -110,7 +106,7 @@ class Performer {
     const HandLoad load = watch_.Load();
     for (int f = 0; f < kNumFingers; ++f) {
       sample.p_WF[f] = robot_.Fingertip(simulation_, f);
-      sample.p_WF_planned[f] = planned_ * PlannedTip(sample_of_plan_, f);
+      sample.p_WF_planned[f] = planned_ * PlannedTipInHand(plan_, sample_of_plan_, f);
       sample.normal[f] = load.normal[f];
     }
     sample.palm_normal = load.palm_normal;
@@ -128,22 +124,6 @@ class Performer {
     ArmTarget target;
     target.q = q;
     return target;
-  }
-
-  // In H.
-  Eigen::Vector3d PlannedTip(std::size_t sample, int finger) const {
-    return plan_.X_WH[sample].inverse() * plan_.p_WF[sample][finger];
-  }
-
-  // Of the reach at time t, between its samples.
-  Pose PlannedPose(double t) const {
-    const double s = std::clamp(t / plan_.dt, 0.0, static_cast<double>(plan_.X_WH.size() - 1));
-    const auto i = static_cast<std::size_t>(s);
-    const Pose& a = plan_.X_WH[i];
-    const Pose& b = plan_.X_WH[std::min(i + 1, plan_.X_WH.size() - 1)];
-    const double u = s - static_cast<double>(i);
-    return MakePose((1 - u) * a.translation() + u * b.translation(),
-                    Eigen::Quaterniond(a.linear()).slerp(u, Eigen::Quaterniond(b.linear())));
   }
 
   HandReference StillAt(const HandVector& q) const {
@@ -169,7 +149,7 @@ class Performer {
     const long steps = StepsFor(end);
     for (long i = 0; i < steps; ++i) {
       const double t = static_cast<double>(i) * simulation_.timestep();
-      planned_ = PlannedPose(t + simulation_.timestep());
+      planned_ = PlannedHandPose(plan_, t + simulation_.timestep());
       sample_of_plan_ = std::min(plan_.arm.size() - 1, static_cast<std::size_t>(t / plan_.dt));
       if (!Step(ArmReferenceAt(plan_.arm, plan_.dt, t), HandReferenceAt(plan_.hand, plan_.dt, t),
                 t < plan_.T ? GripStage::kFree : GripStage::kClosing, 0)) {
@@ -181,9 +161,9 @@ class Performer {
       if (t > plan_.T) continue;
       for (int f = 0; f < kNumFingers; ++f) {
         if (!plan_.involved[f]) continue;
-        finger_sum +=
-            (X_WH.inverse() * robot_.Fingertip(simulation_, f) - PlannedTip(sample_of_plan_, f))
-                .squaredNorm();
+        finger_sum += (X_WH.inverse() * robot_.Fingertip(simulation_, f) -
+                       PlannedTipInHand(plan_, sample_of_plan_, f))
+                          .squaredNorm();
         ++fingers;
       }
     }
@@ -245,7 +225,7 @@ class Performer {
       if (t <= quiet) p_HO_quiet = watch_.ObjectInHand().translation();
       if (t <= criteria_.hold - criteria_.window) {
         watch_.window().Clear();
-        force_window_ = {};
+        force_window_.Clear();
       }
       if (!Step(Rest(plan_.lift.back()), StillAt(plan_.hand.back()), GripStage::kPressing, 1))
         return false;
@@ -257,10 +237,8 @@ class Performer {
     performance_.weight_error =
         WeightError(performance_.hold, robot_.HandPose(simulation_).linear(),
                     simulation_.model().body_subtreemass[object_] * kGravity);
-    for (int f = 0; f < kNumFingers; ++f) {
-      performance_.force_target[f] = force_window_.target[f] / std::max(1, force_window_.count);
-      performance_.force_sensed[f] = force_window_.sensed[f] / std::max(1, force_window_.count);
-    }
+    performance_.force_target = force_window_.MeanTarget();
+    performance_.force_sensed = force_window_.MeanSensed();
     return true;
   }
 
@@ -393,10 +371,7 @@ class Performer {
   Pose planned_ = Pose::Identity();
   std::size_t sample_of_plan_ = 0;
   HandVector hand_planned_;
-  struct {
-    int count = 0;
-    PerFinger<double> target{}, sensed{};
-  } force_window_;
+  ForceWindow force_window_;
   double next_sample_ = 0;
 };
 

@@ -37,7 +37,7 @@ struct PerformOptions {
   PneumaticParameters pneumatics;  // of the scene
   RandomEngine actuation{0};       // stream "actuation" of the trial: sensor noise
   double max_finger_force = 5;     // N
-  // Joints put where they are wanted before every step: the arm's always, the fingers' until T.
+  // Joints put where they are wanted before every step until T, the end of the reach proper.
   bool exact_arm = false, exact_fingers = false;
   double sample_dt = 0.01;  // s, of the recorded trajectory
 };

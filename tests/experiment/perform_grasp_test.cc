@@ -95,7 +95,7 @@ TEST(PerformGraspTest, ExactJointsAreWhereTheyArePlanned) {
   options.exact_arm = options.exact_fingers = true;
   const TrialResult exact = PerformGrasp(grasp, scene, options);
   EXPECT_EQ(OutcomeName(exact.outcome), "success") << exact.message;
-  EXPECT_LT(exact.values.at("arm_late_error_mm"), 0.1 * driven.values.at("arm_late_error_mm"));
+  EXPECT_LT(exact.values.at("arm_late_error_mm"), 0.2 * driven.values.at("arm_late_error_mm"));
   EXPECT_LT(exact.values.at("finger_error_mm"), 0.5 * driven.values.at("finger_error_mm"));
 }
 
