@@ -42,7 +42,7 @@ struct GripSettings {
   double settle = 0.4;              // s after that until the posture is held
   double force_integral = 3;        // 1/s, of the sensed force's error
   double max_correction = 0.4;      // of the force
-  double bearable = 0.85;           // of the force that the valves can give, asked for at most
+  double bearable = 0.95;           // of the force that the valves can give, asked for at most
   double near_stop = 0.45;          // rad, that a joint may give way to its stop instead
   double regrip_distance = 0.0015;  // m, that thumb and fingers come closer when the object slips
   double enclosing_regrip_distance = 0.003;  // m, that the fingers' pads come nearer to their bases

@@ -25,8 +25,10 @@ constexpr double kClosingPart = 0.25;        // of T, in which the open hand nea
 constexpr double kWay = 0.72;                // of T, then the object enters the hand
 // The hand is not fully open on its way yet, so its open outline may cut the object a little (tuned
 // with experiments/first_grasps, seeds below 1000).
-constexpr double kBlocked = -0.01;           // m, less than this on the way: another pose is tried
-constexpr double kWaitClearance = 0.015;     // m, between object and waiting fingers
+constexpr double kBlocked = -0.01;  // m, less than this on the way: another pose is tried
+// m, between object and waiting fingers, so that what stands 10 mm from where it is believed is not
+// knocked over (tuned with experiments/pose_error, seed 63); pinched balls are not at the smaller.
+constexpr double kWaitClearance = 0.020, kPinchWaitClearance = 0.015;
 constexpr double kReleaseClearance = 0.05;   // m, between object and fingers that let go
 constexpr double kInset = 0.026;             // m, of a plate, between its edge and the contacts
 constexpr double kSpareClearance = 0.003;    // m, between a plate and what shall not touch it
@@ -47,6 +49,9 @@ struct Planning {
   const Pose& X_WO() const { return request.object.X_WO; }
   bool power() const { return grasp.type == "power"; }
   bool lateral() const { return grasp.type == "lateral"; }
+  double wait_clearance() const {
+    return grasp.type == "pinch" ? kPinchWaitClearance : kWaitClearance;
+  }
 };
 
 Planning PlanningOf(const RobotBody& body, const Grasp& grasp, const PlanRequest& request) {
@@ -98,11 +103,12 @@ bool StartsClear(const RobotBody& body, const PlanRequest& request, const Pose& 
 // The last posture of a baseline's way that keeps its involved fingers off the object as the hand
 // will hold it, or the first.
 Eigen::VectorXd LastClear(const RobotHand& hand, const std::vector<Eigen::VectorXd>& q,
-                          const Pose& X_OH, const Shape& shape, const PerFinger<bool>& involved) {
+                          const Pose& X_OH, const Shape& shape, const PerFinger<bool>& involved,
+                          double clearance) {
   std::vector<Pose> X_HB;
   for (std::size_t i = q.size(); i-- > 0;) {
     ForwardKinematics(hand.tree, q[i], X_HB);
-    if (HandDistance(hand, X_HB, X_OH, shape, involved, false) >= kWaitClearance) return q[i];
+    if (HandDistance(hand, X_HB, X_OH, shape, involved, false) >= clearance) return q[i];
   }
   return q.front();
 }
@@ -189,6 +195,8 @@ ReachRequest RequestReach(const Planning& p, const Hold& hold, const Eigen::Vect
   reach.X_HO = hold.posture.X_HO;
   reach.X_HC = ContactFrame(p.shape(), hold.posture);
   reach.tilt_free = !p.power();
+  // Turned far, a plate would leave the index's first phalanx.
+  reach.tilt_far = !p.lateral();
   reach.involved = nominal.motion.involved;
   reach.spare_clearance = p.lateral()
                               ? kSpareClearance
@@ -236,9 +244,9 @@ std::vector<Eigen::VectorXd> PlanFingers(const Planning& p, const Hold& hold,
     q_end = mapped.q.back();
     // Demonstrated fingers have a widest aperture of their own; others open as far as they must.
     q_wait = p.request.baseline->name == "playback" ? hand.tree.upper
-             : p.power()
-                 ? mapped.q.front()
-                 : LastClear(hand, mapped.q, hold.posture.X_HO.inverse(), p.shape(), hold.closing);
+             : p.power()                            ? mapped.q.front()
+                         : LastClear(hand, mapped.q, hold.posture.X_HO.inverse(), p.shape(),
+                                     hold.closing, p.wait_clearance());
   }
   std::vector<Eigen::VectorXd> q =
       CloseAfterArrival(hand, mapped, hold.closing, q_wait, q_end, p.generate.dt, motion.T);
@@ -254,7 +262,7 @@ PlanResult PlanAtThisSpeed(const Planning& p, const Hold& hold) {
   result.posture = hold.posture;
   // An object that seats in the palm has to pass the thumb on its way in.
   const Eigen::VectorXd q_wait =
-      p.power() ? hold.q_open : OpenedHold(hand, hold, p.shape(), kWaitClearance);
+      p.power() ? hold.q_open : OpenedHold(hand, hold, p.shape(), p.wait_clearance());
   ReachRequest reach = RequestReach(p, hold, q_wait);
   Arm arm = p.body.arm;
   for (int j = 0; j < arm.num_joints(); ++j) arm.q[arm.joints[j]] = request.arm_start[j];

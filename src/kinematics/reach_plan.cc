@@ -310,7 +310,8 @@ ReachPlan PlanReach(const Arm& arm, const RobotHand& hand, const ReachRequest& r
   ThrowUnless(!request.q_hand.empty() && request.path && request.clear,
               "a reach needs the hand's joints, a path of hand poses and what is in its way");
   ReachPlan plan = PlanWithin(arm, hand, request, options);
-  if (!request.tilt_free || request.shape.kind == Shape::Kind::kSphere) return plan;
+  if (!request.tilt_free || !request.tilt_far || request.shape.kind == Shape::Kind::kSphere)
+    return plan;
   ReachOptions wider = options;
   wider.slide_step = kSlideStep;
   for (const double tilt : {options.last_resort_tilt, options.any_tilt}) {
