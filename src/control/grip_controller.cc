@@ -7,6 +7,7 @@ namespace springgrasp {
 namespace {
 
 constexpr double kLeastForce = 0.5;  // N, pressed with whatever the valves can give
+constexpr double kFull = 0.99;       // of the supply's pressure
 
 }  // namespace
 
@@ -114,8 +115,9 @@ void GripController::Press(const RobotState& state, double dt, HandTarget& targe
     for (const double n : sensed) both += n / 2;
     if (task_.push_H) both = sensed[kThumb];
     const double limit = settings_.max_correction * force;
-    correction_ =
-        std::clamp(correction_ + settings_.force_integral * (force - both) * dt, -limit, limit);
+    // Where a valve gives all it has, more would only bend the other joints.
+    const double missing = AtFullPressure(state) ? std::min(0.0, force - both) : force - both;
+    correction_ = std::clamp(correction_ + settings_.force_integral * missing * dt, -limit, limit);
     int opposed = 0;
     for (int f = kIndex; f < kNumFingers; ++f) opposed += task_.involved[f];
     const double even = (2 * both - sensed[kThumb]) / std::max(1, opposed);
@@ -152,6 +154,15 @@ GripTorque GripController::TorqueOf(double force) const {
   return task_.push_H
              ? KeyGripTorque(hand_, tip_frames_, X_HB_, *task_.push_H, force)
              : FingertipGripTorque(hand_, tip_frames_, X_HB_, {task_.involved, force, share_});
+}
+
+bool GripController::AtFullPressure(const RobotState& state) const {
+  for (int j = 0; j < model_.layout.num_joints(); ++j) {
+    if (Grips(j) && state.pressure[model_.layout.valve_of_joint[j]] > kFull * kMaxPressureBar) {
+      return true;
+    }
+  }
+  return false;
 }
 
 // What the valves can give at this posture, less what the force's controller may add. A joint that

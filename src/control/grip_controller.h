@@ -108,6 +108,7 @@ class GripController {
   }
   GripTorque TorqueOf(double force) const;
   double BearableForce(const RobotState& state) const;
+  bool AtFullPressure(const RobotState& state) const;
   void Press(const RobotState& state, double dt, HandTarget& target);
   void WatchSlip(const RobotState& state, double dt);
   void CloseOn(const HandTarget& plan, bool all, double dt);

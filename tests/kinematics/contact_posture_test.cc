@@ -58,10 +58,11 @@ TEST_P(FingertipPostureTest, PadsLieOnTheContactsAndNothingElseTouches) {
   for (int f = 0; f < kNumFingers; ++f) {
     EXPECT_LT(std::abs(posture.gap[f]), 0.0005) << kFingerNames[f];  // uninvolved: 0
   }
-  // Tripod contacts were asked 24 mm apart, the robot's fingers are 27 mm apart.
-  EXPECT_LT(posture.slide, type == "pinch" ? 0.001 : 0.004);
+  // Tripod contacts were asked 24 mm apart, the robot's fingers are 27 mm apart; and three pads lie
+  // deeper by 6 degrees each than opposed ones.
+  EXPECT_LT(posture.slide, type == "pinch" ? 0.001 : 0.005);
   EXPECT_LT(posture.penetration, 0.001);
-  EXPECT_GT(posture.opposition_deg, 170);
+  EXPECT_GT(posture.opposition_deg, type == "pinch" ? 170 : 165);
   EXPECT_GT(posture.clearance, 0.008);
   // The wrist lies where the demonstrated one lay, about the contact line.
   const Pose X_OH = posture.X_HO.inverse();
