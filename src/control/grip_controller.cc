@@ -156,9 +156,13 @@ GripTorque GripController::TorqueOf(double force) const {
              : FingertipGripTorque(hand_, tip_frames_, X_HB_, {task_.involved, force, share_});
 }
 
+// Whether a valve whose joints no stop helps gives all it has.
 bool GripController::AtFullPressure(const RobotState& state) const {
+  const ValveVector q = MeanOfValves(model_.layout, state.hand_q);
   for (int j = 0; j < model_.layout.num_joints(); ++j) {
-    if (Grips(j) && state.pressure[model_.layout.valve_of_joint[j]] > kFull * kMaxPressureBar) {
+    const int v = model_.layout.valve_of_joint[j];
+    if (Grips(j) && q[v] - model_.lower[v] >= settings_.near_stop &&
+        state.pressure[v] > kFull * kMaxPressureBar) {
       return true;
     }
   }
