@@ -120,7 +120,7 @@ void WholeTrial(benchmark::State& state) {
 }
 BENCHMARK(WholeTrial)->Unit(benchmark::kMillisecond)->MinTime(3);
 
-constexpr int kTrialsEach = 12;
+constexpr int kTrialsEach = 24;
 
 // Model and trial are made anew each time, here and in the run engine.
 void TwoBareProcesses(benchmark::State& state) {

@@ -78,7 +78,7 @@ std::vector<Entry> EntriesOf(const StereoCameras& cameras, const HandObservation
   const HandMask &from = *observation.masks[0], &to = *observation.masks[1];
   // Of every entry looked at the nearest disc, by its distance in radii.
   struct Nearest {
-    float off = kBeside;
+    float off = static_cast<float>(kBeside);
     int disc = -1;
   };
   const int columns = left.cols / kStride, rows = left.rows / kStride;
