@@ -30,7 +30,7 @@ struct ReachRequest {
   Pose X_HO = Pose::Identity();  // object in the robot's hand at contact
   Pose X_HC = Pose::Identity();  // see ContactFrame: tilts are about its x
   bool tilt_free = true;         // fingertip grasps: tilt about the contact line
-  bool tilt_far = true;          // ... beyond max_tilt, where nothing else can be reached
+  bool tilt_far = true;          // ... beyond max_tilt, and slide, where nothing else is reached
   double table_height = 0;       // m, world
   double table_edge = -1e9;      // m, W's y where the table begins; nearer, nothing is hit
   std::vector<Obstacle> obstacles;
