@@ -315,8 +315,8 @@ int Main(int argc, char** argv) {
   fmt::print(
       "steps of {} rad, 5 starts, 7 valves, 6 directions of gravity: time to 90 % (s), overshoot "
       "(%), largest error after {} s (degrees); each mean / worst; steps that the spring does not "
-      "end in time even if the "
-      "valve is let out from the first moment, and the worst error of all others\n",
+      "end in time even if the valve is let out from the first moment, and the worst of the "
+      "others\n",
       kStep, kSettled);
   for (const Condition& c : conditions) PrintSteps(c, seed);
   fmt::print(

@@ -63,6 +63,10 @@ TEST_P(FingertipPostureTest, PadsLieOnTheContactsAndNothingElseTouches) {
   EXPECT_LT(posture.slide, type == "pinch" ? 0.001 : 0.005);
   EXPECT_LT(posture.penetration, 0.001);
   EXPECT_GT(posture.opposition_deg, type == "pinch" ? 170 : 165);
+  // On faces, and across a cylinder seen along its axis, normals stay opposed wherever pads lie.
+  if (type == "tripod" && request.shape.kind == Shape::Kind::kSphere) {
+    EXPECT_LT(posture.opposition_deg, 175);
+  }
   EXPECT_GT(posture.clearance, 0.008);
   // The wrist lies where the demonstrated one lay, about the contact line.
   const Pose X_OH = posture.X_HO.inverse();

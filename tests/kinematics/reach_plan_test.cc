@@ -159,6 +159,23 @@ TEST(ReachPlanTest, WhatIsRefusedIsNotTaken) {
   EXPECT_EQ(none.reason, "none of them");
 }
 
+TEST(ReachPlanTest, HandsTurnFarOrSlideOnlyWhereTheyMayAndMust) {
+  ReachRequest request =
+      MakeReach("pinch", "box:0.03x0.03x0.12", {0, -0.6, 0.8}, {0.35, 0.45}, 0.85);
+  const auto far = [](const ReachPlan& plan) {
+    return plan.slide > 0 || std::abs(plan.tilt) > ReachOptions().max_tilt + 1e-9;
+  };
+  const ReachPlan near = PlanReach(TestArm(), TestRobotHand(), request);
+  ASSERT_TRUE(near.reachable) << near.reason;
+  EXPECT_FALSE(far(near));
+  request.refusal = [&](const ReachPlan& plan) { return far(plan) ? "" : "blocked"; };
+  const ReachPlan farther = PlanReach(TestArm(), TestRobotHand(), request);
+  ASSERT_TRUE(farther.reachable) << farther.reason;
+  EXPECT_TRUE(far(farther));
+  request.tilt_far = false;
+  EXPECT_FALSE(PlanReach(TestArm(), TestRobotHand(), request).reachable);
+}
+
 TEST(ReachPlanTest, KeepsTheAskedDistanceFromTheTable) {
   const ReachRequest request =
       MakeReach("pinch", "sphere:0.04", {0, -0.6, 0.8}, {0.35, 0.45}, 0.85);
