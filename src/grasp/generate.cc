@@ -30,6 +30,15 @@ double SectionRadius(const Shape& shape, const TriangleMesh* mesh, const Vector3
   return mesh ? MeanSectionRadius(*mesh, along) : MeanSectionRadius(shape, along);
 }
 
+// Fingertips where no hand has any.
+bool Astray(const FingerMotion& motion) {
+  constexpr double kFarthest = 0.5;  // m from H
+  return std::any_of(motion.p_HF.begin(), motion.p_HF.end(), [](const Fingertips& tips) {
+    return std::any_of(tips.begin(), tips.end(),
+                       [](const Vector3d& p) { return !(p.norm() <= kFarthest); });
+  });
+}
+
 }  // namespace
 
 Vector3d MiddleOfContacts(const PerFinger<Contact>& contacts, const PerFinger<bool>& involved) {
@@ -168,7 +177,12 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
   run.T = T;
   run.t_switch = grasp.switch_rule == "fitted" ? grasp.t_switch * T : path.t_switch;
   motion.t_switch = run.t_switch + run.gains.delay;
-  const auto fingers = SimulateFingers(run, path.acceleration, options.dt);
+  auto fingers = SimulateFingers(run, path.acceleration, options.dt);
+  if (!fingers || Astray(*fingers)) {
+    // Far from its contact a bent way leads away from it: then the straight one.
+    run.bend.fill(Vector3d::Zero());
+    fingers = SimulateFingers(run, path.acceleration, options.dt);
+  }
   ThrowUnless(fingers.has_value(),
               "{}: the fingertip springs run away (kc {} N/m, dc {} N s/m, gamma {} kg, T {} s)",
               grasp.name, run.gains.kc, run.gains.dc, run.gains.gamma, T);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlopt.hpp>
 #include <numbers>
+#include <optional>
 
 #include "base/error.h"
 #include "base/random.h"
@@ -289,6 +290,26 @@ MappingSolution Minimize(MappingProblem& problem, const ValveAngles& start, int 
   return best;
 }
 
+// A finger at the end of a joint's range may be better bent at its other joint: the solution of the
+// whole ranges with the bend of one finger moved there, if it is better by more than round-off.
+void BendElsewhere(const RobotHand& robot, MappingProblem& free, int max_iterations,
+                   MappingSolution& solution) {
+  constexpr double kBetter = 1 - 1e-4;  // of the cost
+  constexpr double kAtEnd = 1e-6;       // rad
+  const MappingSolution before = solution;
+  for (const RobotHand::Finger& finger : robot.fingers) {
+    const int v0 = robot.valve_of[finger.j0], v1 = robot.valve_of[finger.j1];
+    const double bend0 = before.x[v0] - free.lower[v0], bend1 = before.x[v1] - free.lower[v1];
+    if (bend0 > kAtEnd && bend1 > kAtEnd) continue;
+    // The tip comes about as near to the knuckle by twice the angle at the middle joint.
+    ValveAngles start = before.x;
+    start[v0] = free.lower[v0] + 0.5 * bend1;
+    start[v1] = std::min(free.lower[v1] + 2 * bend0 + 0.3, free.upper[v1]);
+    const MappingSolution other = Minimize(free, start, max_iterations);
+    if (other.cost < kBetter * solution.cost) solution = other;
+  }
+}
+
 MappingResult MapFrame(const RobotHand& robot, const MappingTarget& target,
                        const Eigen::VectorXd& previous, const MappingOptions& options,
                        FastHand& hand) {
@@ -307,6 +328,35 @@ MappingResult MapFrame(const RobotHand& robot, const MappingTarget& target,
     }
   }
   return ResultOf(problem, solution);
+}
+
+// From the anchor to the end. Every few frames the other bends of fingers at the end of a range are
+// looked into; where one has become better the hand goes there, at most max_step a frame.
+void MapOnwards(const RobotHand& robot, const std::vector<MappingTarget>& targets, int anchor,
+                const MappingOptions& options, FastHand& hand,
+                std::vector<MappingResult>& results) {
+  constexpr int kLookEvery = 4;  // frames
+  MappingOptions unbounded = options;
+  unbounded.max_step = 0;
+  std::optional<ValveAngles> heading;
+  for (int k = anchor + 1; k < static_cast<int>(targets.size()); ++k) {
+    MappingProblem problem(robot, targets[k], results[k - 1].q, options, hand);
+    MappingSolution solution = Minimize(problem, problem.Start(), options.max_iterations);
+    if (heading || (k - anchor) % kLookEvery == 0) {
+      MappingProblem free(robot, targets[k], results[k - 1].q, unbounded, hand);
+      MappingSolution other = heading ? Minimize(free, *heading, options.max_iterations) : solution;
+      if (!heading) BendElsewhere(robot, free, options.max_iterations, other);
+      heading.reset();
+      if (other.cost < solution.cost) {
+        const ValveAngles x = other.x.cwiseMax(problem.lower).cwiseMin(problem.upper);
+        if (x != other.x) heading = other.x;
+        solution.x = x;
+        solution.cost = problem.Evaluate(x, nullptr, nullptr);
+        solution.squared_tip_errors = problem.squared_tip_errors();
+      }
+    }
+    results[k] = ResultOf(problem, solution);
+  }
 }
 
 }  // namespace
@@ -329,9 +379,7 @@ std::vector<MappingResult> MapHandAlong(const RobotHand& robot,
   for (int k = anchor - 1; k >= 0; --k) {
     results[k] = MapFrame(robot, targets[k], results[k + 1].q, options, hand);
   }
-  for (int k = anchor + 1; k < n; ++k) {
-    results[k] = MapFrame(robot, targets[k], results[k - 1].q, options, hand);
-  }
+  MapOnwards(robot, targets, anchor, options, hand, results);
   return results;
 }
 

@@ -41,7 +41,7 @@ struct HandMotionResult {
   std::vector<PerFinger<Eigen::Vector3d>> p_HF;  // tips in the robot's H, m
   double max_step = 0;                           // rad, largest joint step between samples
   double clearance = 0;                          // m, smallest before closing begins
-  double mapping_error = 0;                      // m, mean tip error to the wanted ones (involved)
+  double mapping_error = 0;  // m, mean tip error to the wanted ones, until T (involved)
 };
 
 // What MapHandMotion asks of the mapping at each sample: the human posture and its scaled tips with

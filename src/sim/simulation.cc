@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "sim/box_contacts.h"
 #include "sim/model_index.h"
 
 namespace springgrasp {
@@ -29,6 +30,7 @@ void Load(const std::vector<double>& from, int n, mjtNum* to) {
 
 Simulation::Simulation(ModelPtr model) : model_(std::move(model)) {
   ThrowUnless(model_ != nullptr, "a simulation needs a model");
+  DropPhantomBoxContacts();
   data_ = MakeData(*model_);
   contacts_.reserve(128);
   Reset();

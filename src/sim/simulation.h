@@ -36,8 +36,8 @@ class Simulation {
 
   void Reset();
   // Advances by `steps` time steps with the controls as set. Stops at the first engine warning,
-  // non-finite number or speed beyond 1000 m/s; from then on diverged() says which, and Step() does nothing until Reset()
-  // or Restore(). Never throws, never crashes.
+  // non-finite number or speed beyond 1000 m/s; from then on diverged() says which, and Step() does
+  // nothing until Reset() or Restore(). Never throws, never crashes.
   void Step(int steps = 1);
   // Recomputes everything that depends on positions and velocities (after placing by hand).
   void Forward();

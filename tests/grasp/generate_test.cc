@@ -237,6 +237,20 @@ TEST(GenerateTest, TheObjectsCentreAloneClosesTheHandOnItsMeanRadius) {
   }
 }
 
+TEST(GenerateTest, AWayBackThatLeadsAFingerAstrayIsTakenStraight) {
+  Grasp grasp = Learned("pinch");
+  GenerateOptions options;
+  options.shape = grasp.shape;
+  const Course straight = CourseOf(GenerateMotion(grasp, options));
+  // Beyond 1 / |bend| from the contact the way back points away from it.
+  for (const int i : {kThumb, kIndex}) grasp.bend[i] = 2000 * grasp.opening[i].normalized();
+  const FingertipMotion motion = GenerateMotion(grasp, options);
+  for (const FingertipMotionSample& sample : motion.samples) {
+    for (const Vector3d& tip : sample.p_HF) EXPECT_LT(tip.norm(), 0.3);
+  }
+  EXPECT_LT(CourseOf(motion).error_after_T, 2 * straight.error_after_T + 0.001);
+}
+
 TEST(GenerateTest, ImpossibleRequestsAreErrors) {
   GenerateOptions options;
   options.duration = -1.0;
