@@ -119,9 +119,15 @@ std::vector<Grasp> ShippedGrasps() {
   return grasps;
 }
 
+// What a plan without success tells of other places to begin from.
+struct Sought {
+  std::vector<Pose> holds;  // of the hand, X_WH
+  bool blocked = false;     // the robot would begin in the object's place
+};
+
 // From the scene's start posture, the `posture`th that is tried.
 TrialResult PerformFrom(const Grasp& grasp, const Scene& scene, const PerformGraspOptions& options,
-                        PlanMemory& plans, int posture, std::vector<Pose>* holds = nullptr) {
+                        PlanMemory& plans, int posture, Sought* sought = nullptr) {
   TrialResult result;
   BuildOptions build;
   build.with_looks = false;
@@ -154,6 +160,7 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene, const PerformGra
   request.criteria = options.criteria;
   request.object_centre = options.object_centre;
   request.baseline = options.baseline;
+  request.seek_holds = sought != nullptr;
   PlanResult plan = plans.Get(options.plan_key, posture, [&] {
     if (request.baseline && request.baseline->name == "synergies") {
       request.baseline->synergies = FindSynergies(body, ShippedGrasps());
@@ -161,7 +168,10 @@ TrialResult PerformFrom(const Grasp& grasp, const Scene& scene, const PerformGra
     return PlanGrasp(body, grasp, request);
   });
   RecordPlan(plan, result);
-  if (holds != nullptr && !body.mirrored) *holds = plan.holds;
+  if (sought != nullptr) {
+    sought->blocked = plan.blocked;
+    if (!body.mirrored) sought->holds = plan.holds;
+  }
   if (!plan.plan) {
     result.outcome = Outcome::kUnreachable;
     result.message = plan.reason;
@@ -224,14 +234,16 @@ TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene,
 TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene, const PerformGraspOptions& options,
                          PlanMemory& plans) {
   int posture = 0;
-  std::vector<Pose> holds;
-  const TrialResult result = PerformFrom(grasp, scene, options, plans, posture, &holds);
+  Sought sought;
+  const TrialResult result = PerformFrom(grasp, scene, options, plans, posture, &sought);
   const ReachAids aids = AidsOf(scene);
   if (result.outcome != Outcome::kUnreachable || !(aids.torso || aids.platform)) return result;
   Scene believed = scene;
   if (options.believe_truth) believed.objects[0].believed = SceneBelief();
   const Eigen::Vector3d p_WO = BelieveObject(believed, 0).X_WO.translation();
-  std::vector<BasePosture> bases = MovesToHold(scene, aids, holds, options.criteria.lift_height);
+  // Of a blocked start many of them will be blocked too.
+  std::vector<BasePosture> bases =
+      MovesToHold(scene, aids, sought.holds, options.criteria.lift_height, sought.blocked ? 24 : 5);
   for (const BasePosture& base : MovesIntoReach(scene, aids, p_WO, {})) bases.push_back(base);
   for (const BasePosture& base : bases) {
     Scene moved = scene;

@@ -344,7 +344,10 @@ PlanResult PlanGrasp(const RobotBody& body, const Grasp& grasp, const PlanReques
     planning.generate.duration = slower * std::max(kFastest, grasp.scales.T);
     const Hold hold = PlanHold(body, planning.human, grasp, planning.generate);
     if (!StartsClear(body, request, planning.X_WH_start, hold.q_open)) {
+      if (request.seek_holds) result = PlanAtThisSpeed(planning, hold);
+      result.plan.reset();
       result.posture = hold.posture;
+      result.blocked = true;
       result.reason = "the robot would stand in the object's place from the start";
       return result;
     }

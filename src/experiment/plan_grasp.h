@@ -28,6 +28,7 @@ struct PlanRequest {
   std::optional<Eigen::Vector2d> place;     // where to set it down, m
   bool object_centre = false;               // Eq. (6) alone, no contact points
   std::optional<BaselineRequest> baseline;  // moves the fingers in the springs' place
+  bool seek_holds = true;                   // also where the robot begins in the object's place
 };
 
 struct PlanResult {
@@ -35,7 +36,7 @@ struct PlanResult {
   std::string reason;
   FingertipMotion motion;  // as generated for the chosen pose of the grasp
   ContactPosture posture;
-  double mapping_error = 0;    // m, involved fingertips against those wanted, mean over reach
+  double mapping_error = 0;    // m, involved fingertips against those wanted, mean over the motion
   double limit_margin = 0;     // see ReachPlan
   double table_clearance = 0;  // m
   double self_clearance = 0;   // m, see ReachPlan
@@ -43,6 +44,7 @@ struct PlanResult {
   double clearance = 0;        // m, hand and object before closing
   // Hand poses that would hold the object, reached or not: a base to reach them from may be sought.
   std::vector<Pose> holds;
+  bool blocked = false;       // the robot would begin in the object's place
   double free_angle_deg = 0;  // how far the chosen pose is turned from the demonstrated one
 };
 

@@ -148,8 +148,8 @@ std::vector<BasePosture> MovesIntoReach(const Scene& scene, const ReachAids& aid
 }
 
 std::vector<BasePosture> MovesToHold(const Scene& scene, const ReachAids& aids,
-                                     const std::vector<Pose>& X_WH, double lift) {
-  constexpr std::size_t kMost = 5, kLooked = 48;
+                                     const std::vector<Pose>& X_WH, double lift, std::size_t most) {
+  constexpr std::size_t kLooked = 48;
   constexpr int kEnough = 12;
   constexpr double kNear = 0.002;  // m, of arm and table or robot
   std::vector<BasePosture> moves;
@@ -189,12 +189,12 @@ std::vector<BasePosture> MovesToHold(const Scene& scene, const ReachAids& aids,
     if (hits == 0) continue;
     found.emplace_back(hits, base);
     well += hits == kEnough;
-    if (well >= 2 * static_cast<int>(kMost)) break;
+    if (well >= 2 * static_cast<int>(most)) break;
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   for (const auto& [hits, base] : found) {
-    if (moves.size() == kMost) break;
+    if (moves.size() == most) break;
     if (reached(MakeReacher(scene, base), true) > 0) moves.push_back(base);
   }
   return moves;

@@ -199,7 +199,7 @@ HandMotionResult MapHandMotion(const HumanHand& human, const RobotHand& robot,
   for (int k = 0; k < n; ++k) {
     const MappingResult& mapped = along[k];
     for (int f = 0; f < kNumFingers; ++f) {
-      if (!request.involved[f] || request.dt * k > request.T) continue;
+      if (!request.involved[f]) continue;
       error += mapped.tip_error[f];
       count += 1;
     }
