@@ -64,6 +64,16 @@ TEST(OutcomesTest, AnObjectBehindTheTableIsUnreachable) {
   ExpectOutcome(trial, Outcome::kUnreachable, "plan");
 }
 
+TEST(OutcomesTest, ARobotThatWouldBeginInTheCylinderBeginsElsewhereIfItMay) {
+  Trial trial("side/tripod", "tripod_side");
+  trial.object().X_WO.translation().head<2>() = Eigen::Vector2d(0.285, 0.441);
+  ExpectOutcome(trial, Outcome::kUnreachable, "plan");
+  trial.scene.active = {"right_arm", "right_hand", "torso", "platform"};
+  const TrialResult result = trial.Run();
+  EXPECT_EQ(OutcomeName(result.outcome), "success") << result.message;
+  EXPECT_NE(result.values.at("start_torso_yaw"), 0);
+}
+
 TEST(OutcomesTest, WhoTakesTheCylinderForFartherPushesIt) {
   Trial trial("power", "power_cylinder");
   trial.object().believed.position.y() = 0.05;

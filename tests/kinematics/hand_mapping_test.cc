@@ -178,5 +178,41 @@ TEST(HandMappingTest, AContinuousMotionMapsToAContinuousMotion) {
   }
 }
 
+// A straight middle finger whose tip is wanted nearer and nearer to the knuckle is best bent at its
+// middle joint in the end, where following the frame before never comes to.
+TEST(HandMappingTest, BehindTheContactTheBetterBendIsTaken) {
+  const RobotHand& robot = TestRobotHand();
+  const RobotHand::Finger& middle = robot.fingers[kMiddle];
+  constexpr int kFrames = 150;
+  MappingOptions options;
+  options.max_step = 3 * std::numbers::pi / 180;
+  const auto tip = [&](double j0, double j1) {
+    Eigen::VectorXd q = robot.open;
+    q[middle.j0] = j0;
+    q[middle.j1] = j1;
+    return TipPositions(robot, q)[kMiddle];
+  };
+  std::vector<MappingTarget> targets;
+  for (int k = 0; k < kFrames; ++k) {
+    MappingTarget target;
+    target.lambda.fill(1);
+    target.lambda[kMiddle] = 1000;
+    target.sigma.fill(Eigen::Vector2d::Zero());
+    target.p_HF = TipPositions(robot, robot.open);
+    const double part = std::min(1.0, k / 100.0);
+    target.p_HF[kMiddle] = (1 - part) * tip(0.15, 0) + part * tip(0, 1.4);
+    targets.push_back(target);
+  }
+  const std::vector<MappingResult> along = MapHandAlong(robot, targets, 0, options);
+  Eigen::VectorXd followed = along[0].q;
+  for (int k = 1; k < kFrames; ++k) {
+    followed = MapHand(robot, targets[k], followed, options).q;
+    EXPECT_LE((along[k].q - along[k - 1].q).cwiseAbs().maxCoeff(), options.max_step * (1 + 1e-9));
+  }
+  const double best = MapHandByNlopt(robot, targets.back(), 20).cost;
+  EXPECT_GT(MapHand(robot, targets.back(), followed, options).cost, 1.1 * best);
+  EXPECT_LT(along.back().cost, best + 1e-9 + 1e-6 * best);
+}
+
 }  // namespace
 }  // namespace springgrasp
