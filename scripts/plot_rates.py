@@ -53,7 +53,7 @@ def median(values):
 class Condition:
     def __init__(self, case, baseline):
         self.case, self.baseline = case, baseline
-        self.outcome = {}  # repetition -> outcome
+        self.outcome = {}  # (demonstration, repetition) -> outcome
         self.values = collections.defaultdict(list)
 
     @property
@@ -78,11 +78,11 @@ def read(folder):
     con = sqlite3.connect(f"file:{pathlib.Path(folder) / 'results.sqlite'}?mode=ro", uri=True)
     conditions = {}
     of = {}
-    rows = con.execute("SELECT id, case_name, baseline, repetition, outcome FROM trials "
+    rows = con.execute("SELECT id, case_name, demonstration, baseline, repetition, outcome FROM trials "
                        "JOIN results USING (id) ORDER BY position")
-    for trial, case, baseline, repetition, outcome in rows:
+    for trial, case, demonstration, baseline, repetition, outcome in rows:
         c = conditions.setdefault((case, baseline), Condition(case, baseline))
-        c.outcome[repetition] = outcome
+        c.outcome[demonstration, repetition] = outcome
         of[trial] = c
     for trial, name, value in con.execute("SELECT id, name, value FROM measurements"):
         if trial in of and name in ("creep_mm_s", "slip_mm", "tracking_median_mm", "place_error_mm", "finger_error_mm"):

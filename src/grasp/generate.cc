@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "base/error.h"
 #include "grasp/generate_fingers.h"
@@ -37,6 +39,28 @@ bool Astray(const FingerMotion& motion) {
     return std::any_of(tips.begin(), tips.end(),
                        [](const Vector3d& p) { return !(p.norm() <= kFarthest); });
   });
+}
+
+// Fingers that open much wider than those that were shown are closed as hard as it takes. The
+// learned way back to a contact is bent, and far away a bent way may lead past it: then straight.
+std::optional<FingerMotion> FingersOf(const FingerRun& run, const std::vector<double>& acceleration,
+                                      double dt) {
+  constexpr double kMissed = 0.002;  // m, of a contact from T on
+  constexpr int kTries = 28;
+  const auto error = [&](const std::optional<FingerMotion>& motion) {
+    return motion && !Astray(*motion) ? ContactError(run, *motion, dt)
+                                      : std::numeric_limits<double>::infinity();
+  };
+  std::optional<FingerMotion> best = SimulateFingers(run, acceleration, dt);
+  if (!run.hold || error(best) <= kMissed) return best;
+  FingerRun straight = run;
+  straight.bend.fill(Vector3d::Zero());
+  for (const FingerRun* other : {&run, &std::as_const(straight)}) {
+    std::optional<FingerMotion> motion = SimulateFingers(*other, acceleration, dt, kTries);
+    if (error(motion) < error(best)) best = std::move(motion);
+    if (error(best) <= kMissed) break;
+  }
+  return best;
 }
 
 }  // namespace
@@ -177,12 +201,7 @@ FingertipMotion GenerateMotion(const Grasp& given, const GenerateOptions& option
   run.T = T;
   run.t_switch = grasp.switch_rule == "fitted" ? grasp.t_switch * T : path.t_switch;
   motion.t_switch = run.t_switch + run.gains.delay;
-  auto fingers = SimulateFingers(run, path.acceleration, options.dt);
-  if (!fingers || Astray(*fingers)) {
-    // Far from its contact a bent way leads away from it: then the straight one.
-    run.bend.fill(Vector3d::Zero());
-    fingers = SimulateFingers(run, path.acceleration, options.dt);
-  }
+  const auto fingers = FingersOf(run, path.acceleration, options.dt);
   ThrowUnless(fingers.has_value(),
               "{}: the fingertip springs run away (kc {} N/m, dc {} N s/m, gamma {} kg, T {} s)",
               grasp.name, run.gains.kc, run.gains.dc, run.gains.gamma, T);

@@ -181,8 +181,8 @@ std::optional<FingerMotion> SimulateHeld(const FingerRun& run,
   return motion;
 }
 
-// Largest distance of an involved tip from its contact (Eq. (6): its sphere)
-// from T on, m.
+}  // namespace
+
 double ContactError(const FingerRun& run, const FingerMotion& motion, double dt) {
   const auto n =
       std::min(static_cast<std::size_t>(std::lround(run.T / dt)), motion.p_HF.size() - 1);
@@ -197,12 +197,11 @@ double ContactError(const FingerRun& run, const FingerMotion& motion, double dt)
   return error;
 }
 
-}  // namespace
-
 std::optional<FingerMotion> SimulateFingers(const FingerRun& run,
-                                            const std::vector<double>& acceleration, double dt) {
+                                            const std::vector<double>& acceleration, double dt,
+                                            int tries) {
   constexpr double kLanded = 0.001;  // m
-  constexpr int kTries = 16, kHalvings = 6;
+  constexpr int kHalvings = 6;
   constexpr double kHarder = 1.5;
   double hold = run.hold ? HoldingForce(run) : 0;
   std::optional<FingerMotion> best;
@@ -221,7 +220,7 @@ std::optional<FingerMotion> SimulateFingers(const FingerRun& run,
   // A hand that is slow against its reach is late at the contacts: it is closed harder, just as
   // hard as it takes, so that similar movements get similar forces.
   if (lands(hold) || !run.hold) return best;
-  for (int n = 1; n < kTries; ++n) {
+  for (int n = 1; n < tries; ++n) {
     double late = hold;
     hold *= kHarder;
     if (!lands(hold)) continue;

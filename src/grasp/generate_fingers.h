@@ -71,11 +71,15 @@ struct FingerMotion {
   std::vector<double> f_cen;     // N
 };
 
+// Largest distance of an involved tip from its contact (Eq. (6): its sphere) from T on, m.
+double ContactError(const FingerRun& run, const FingerMotion& motion, double dt);
+
 // Fingertips in H at even steps of `dt`. With `hold`, the central force after the switch never
 // falls below a ramp that rises to the holding force at T; that force is raised where the tips
-// would not have landed at T (spring-model note, section 5: slower hands miss the contact). Nothing
-// if the springs run away.
+// would not have landed at T (spring-model note, section 5: slower hands miss the contact), by half
+// again up to `tries` times. Nothing if the springs run away.
 std::optional<FingerMotion> SimulateFingers(const FingerRun& run,
-                                            const std::vector<double>& acceleration, double dt);
+                                            const std::vector<double>& acceleration, double dt,
+                                            int tries = 16);
 
 }  // namespace springgrasp

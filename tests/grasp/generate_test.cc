@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "grasp/learn.h"
 #include "synthetic_demonstration.h"
 
@@ -249,6 +250,23 @@ TEST(GenerateTest, AWayBackThatLeadsAFingerAstrayIsTakenStraight) {
     for (const Vector3d& tip : sample.p_HF) EXPECT_LT(tip.norm(), 0.3);
   }
   EXPECT_LT(CourseOf(motion).error_after_T, 2 * straight.error_after_T + 0.001);
+}
+
+TEST(GenerateTest, FingersOfTheLibraryLandInTimeFromAnywhere) {
+  for (const char* type : {"pinch", "tripod", "power", "lateral", "side/tripod"}) {
+    const Grasp grasp = ReadGrasp(SourceFolder() + "/models/grasps/" + type + ".yaml");
+    GenerateOptions options;
+    options.shape = grasp.shape;
+    options.similar_reach = true;
+    RandomEngine engine = MakeStream(1, 0, "generate_test");
+    for (int n = 0; n < 10; ++n) {
+      const Vector3d turn(Uniform(engine, -0.6, 0.6), Uniform(engine, -0.6, 0.6),
+                          Uniform(engine, -0.6, 0.6));
+      options.X_WG_start = MakePose({Uniform(engine, -0.3, 0.1), Uniform(engine, -0.4, -0.1), 0.2},
+                                    ExpRotation(turn));
+      EXPECT_LT(CourseOf(GenerateMotion(grasp, options)).error_at_T, 0.005) << type << " " << n;
+    }
+  }
 }
 
 TEST(GenerateTest, ImpossibleRequestsAreErrors) {
