@@ -63,6 +63,29 @@ TEST(BoxContactsTest, ABoxThatStandsFlatTouchesNowhereButUnderItself) {
   EXPECT_LT(deepest_of_many(), 2e-4);
 }
 
+TEST(BoxContactsTest, APlateOnANarrowBlockTouchesNowhereBesideIt) {
+  DropPhantomBoxContacts();
+  const ModelPtr model = LoadModelText(R"(
+<mujoco>
+  <worldbody>
+    <geom type="box" size="0.015 0.015 0.05" pos="0 0 0.05"/>
+    <body pos="0 0 0.1025"><freejoint/><geom type="box" size="0.04 0.08 0.0025" mass="0.03"/></body>
+  </worldbody>
+</mujoco>)",
+                                       "plate");
+  const DataPtr data = MakeData(*model);
+  int contacts = 0;
+  for (int i = 0; i < 200; ++i) {
+    mj_step(model.get(), data.get());
+    for (int c = 0; c < data->ncon; ++c, ++contacts) {
+      EXPECT_LT(std::abs(data->contact[c].pos[0]), 0.0161);
+      EXPECT_LT(std::abs(data->contact[c].pos[1]), 0.0161);
+    }
+  }
+  EXPECT_GT(contacts, 600);
+  EXPECT_GT(data->xmat[9 + 8], 0.999);
+}
+
 TEST(BoxContactsTest, RealContactsStay) {
   DropPhantomBoxContacts();
   Boxes boxes = MakeBoxes();
