@@ -29,13 +29,18 @@ struct Reacher {
   ReachSurroundings around;
 };
 
-Reacher MakeReacher(const Scene& scene, const BasePosture& base) {
+// The scene's robot and table, the robot in that posture.
+Simulation WithoutObjects(const Scene& scene, const BasePosture& base) {
   Scene moved = scene;
   moved.objects.clear();
   for (const auto& [joint, value] : base) moved.start[joint] = value;
   BuildOptions build;
   build.with_looks = false;
-  const Simulation simulation(BuildModel(moved, build));
+  return Simulation(BuildModel(moved, build));
+}
+
+Reacher MakeReacher(const Scene& scene, const BasePosture& base) {
+  const Simulation simulation = WithoutObjects(scene, base);
   RobotBody robot = MakeRobotBody(simulation);
   Reacher reacher{std::move(robot.arm),
                   std::move(robot.arm_body),
@@ -111,6 +116,10 @@ ReachAids AidsOf(const Scene& scene) {
   return {scene.torso == "free" || active("torso"), active("platform")};
 }
 
+bool StandsClear(const Scene& scene, const BasePosture& base) {
+  return WithoutObjects(scene, base).data().ncon == 0;
+}
+
 std::vector<BasePosture> MovesIntoReach(const Scene& scene, const ReachAids& aids,
                                         const Eigen::Vector3d& p_WO,
                                         const ReachMapOptions& options) {
@@ -140,7 +149,8 @@ std::vector<BasePosture> MovesIntoReach(const Scene& scene, const ReachAids& aid
     for (const auto& [joint, value] : base) {
       quick.arm.q[quick.arm.tree.JointIndex(joint)] = value;
     }
-    if (!enough(quick, false) || !enough(MakeReacher(scene, base), true)) continue;
+    if (!enough(quick, false) || !StandsClear(scene, base)) continue;
+    if (!enough(MakeReacher(scene, base), true)) continue;
     moves.push_back(base);
     if (moves.size() == kMost) break;
   }
@@ -195,6 +205,7 @@ std::vector<BasePosture> MovesToHold(const Scene& scene, const ReachAids& aids,
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   for (const auto& [hits, base] : found) {
     if (moves.size() == most) break;
+    if (!StandsClear(scene, base)) continue;
     if (reached(MakeReacher(scene, base), true) > 0) moves.push_back(base);
   }
   return moves;

@@ -40,6 +40,9 @@ struct ReachReport {
 // from above.
 ReachReport ReportReach(const Scene& scene, const ReachAids& aids, const ReachMapOptions& options);
 
+// Whether a robot in this posture touches neither itself nor the scene's table.
+bool StandsClear(const Scene& scene, const BasePosture& base);
+
 // Torso and platform postures that bring a place well into reach, least first; at most 3.
 std::vector<BasePosture> MovesIntoReach(const Scene& scene, const ReachAids& aids,
                                         const Eigen::Vector3d& p_WO,

@@ -63,6 +63,15 @@ TEST(ReachReportTest, ThePlatformMovesToWhereAGraspHolds) {
   EXPECT_TRUE(MovesToHold(scene, {false, false}, holds, 0.1).empty());
 }
 
+TEST(ReachReportTest, ATurnedHipIsInTheTableWhereAStraightOneIsNot) {
+  Scene scene = WithBallAt(0.3, 0.5);
+  scene.table.height = 0.93;
+  scene.active = {"right_arm", "right_hand", "torso", "platform"};
+  EXPECT_TRUE(StandsClear(scene, {}));
+  EXPECT_TRUE(StandsClear(scene, {{"platform_x", 0.2}, {"platform_y", 0.1}}));
+  EXPECT_FALSE(StandsClear(scene, {{"platform_x", 0.2}, {"platform_y", 0.1}, {"torso_yaw", 0.52}}));
+}
+
 TEST(ReachReportTest, AidsAreWhatTheSceneLetsMove) {
   Scene scene = WithBallAt(0.4, 0.5);
   EXPECT_FALSE(AidsOf(scene).torso);
