@@ -144,20 +144,23 @@ MappingResult MapFrame(const RobotHand& robot, const MappingTarget& target,
   return ResultOf(problem, solution);
 }
 
-// From the anchor to the end. Every few frames the other bends of fingers at the end of a range are
-// looked into; where one has become better the hand goes there, at most max_step a frame.
+// From the anchor to one end (`way` 1: the last frame, -1: the first). Every few frames the other
+// bends of fingers at the end of a range are looked into; where one has become better the hand goes
+// there, at most max_step a frame.
 void MapOnwards(const RobotHand& robot, const std::vector<MappingTarget>& targets, int anchor,
-                const MappingOptions& options, FastHand& hand,
+                int way, const MappingOptions& options, FastHand& hand,
                 std::vector<MappingResult>& results) {
   constexpr int kLookEvery = 4;  // frames
   MappingOptions unbounded = options;
   unbounded.max_step = 0;
   std::optional<ValveAngles> heading;
-  for (int k = anchor + 1; k < static_cast<int>(targets.size()); ++k) {
-    MappingProblem problem(robot, targets[k], results[k - 1].q, options, hand);
+  const int n = static_cast<int>(targets.size());
+  for (int k = anchor + way; k >= 0 && k < n; k += way) {
+    const Eigen::VectorXd& previous = results[k - way].q;
+    MappingProblem problem(robot, targets[k], previous, options, hand);
     MappingSolution solution = Minimize(problem, problem.Start(), options.max_iterations);
     if (heading || (k - anchor) % kLookEvery == 0) {
-      MappingProblem free(robot, targets[k], results[k - 1].q, unbounded, hand);
+      MappingProblem free(robot, targets[k], previous, unbounded, hand);
       MappingSolution other = heading ? Minimize(free, *heading, options.max_iterations) : solution;
       if (!heading) BendElsewhere(robot, free, options.max_iterations, other);
       heading.reset();
@@ -190,10 +193,7 @@ std::vector<MappingResult> MapHandAlong(const RobotHand& robot,
   FastHand hand(robot);
   anchor = std::clamp(anchor, 0, n - 1);
   results[anchor] = MapFrame(robot, targets[anchor], {}, options, hand);
-  for (int k = anchor - 1; k >= 0; --k) {
-    results[k] = MapFrame(robot, targets[k], results[k + 1].q, options, hand);
-  }
-  MapOnwards(robot, targets, anchor, options, hand, results);
+  for (const int way : {-1, 1}) MapOnwards(robot, targets, anchor, way, options, hand, results);
   return results;
 }
 
