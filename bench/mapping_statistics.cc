@@ -166,7 +166,9 @@ void Trace(const std::string& path) {
     const GraspCase c = MakeGraspCase(bodies, library, kSeed, n);
     const RobotHand& robot = c.body->hand;
     const std::vector<MappingTarget> targets = MappingTargets(c.human, robot, c.request);
-    const std::vector<MappingResult> mapped = MapHandAlong(robot, targets, Anchor(c));
+    MappingOptions options;
+    options.max_step = kJump;
+    const std::vector<MappingResult> mapped = MapHandAlong(robot, targets, Anchor(c), options);
     for (std::size_t k = 0; k < targets.size(); k += 2) {
       csv += fmt::format("{},{:.4f}", c.type, c.request.dt * static_cast<double>(k) / c.request.T);
       for (int f = 0; f < kNumFingers; ++f) {

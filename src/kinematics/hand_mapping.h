@@ -54,7 +54,8 @@ MappingResult MapHand(const RobotHand& robot, const MappingTarget& target,
                       const Eigen::VectorXd& previous = {}, const MappingOptions& options = {});
 
 // A whole trajectory: frame `anchor` from cold (the contact, where the posture matters), the others
-// from there to both ends, each started from its neighbour.
+// from there to both ends, each started from its neighbour, or on the way to another bend of a
+// finger where that has become better.
 std::vector<MappingResult> MapHandAlong(const RobotHand& robot,
                                         const std::vector<MappingTarget>& targets, int anchor,
                                         const MappingOptions& options = {});
