@@ -241,9 +241,11 @@ TrialResult PerformGrasp(const Grasp& grasp, const Scene& scene, const PerformGr
   Scene believed = scene;
   if (options.believe_truth) believed.objects[0].believed = SceneBelief();
   const Eigen::Vector3d p_WO = BelieveObject(believed, 0).X_WO.translation();
-  // Of a blocked start many of them will be blocked too.
+  // Of a blocked start's neighbours many are blocked too, which is soon seen.
+  constexpr std::size_t kMoves = 5, kMovesWhereBlocked = 24;
   std::vector<BasePosture> bases =
-      MovesToHold(scene, aids, sought.holds, options.criteria.lift_height, sought.blocked ? 24 : 5);
+      MovesToHold(scene, aids, sought.holds, options.criteria.lift_height,
+                  sought.blocked ? kMovesWhereBlocked : kMoves);
   for (const BasePosture& base : MovesIntoReach(scene, aids, p_WO, {})) bases.push_back(base);
   for (const BasePosture& base : bases) {
     Scene moved = scene;

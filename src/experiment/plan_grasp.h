@@ -28,7 +28,7 @@ struct PlanRequest {
   std::optional<Eigen::Vector2d> place;     // where to set it down, m
   bool object_centre = false;               // Eq. (6) alone, no contact points
   std::optional<BaselineRequest> baseline;  // moves the fingers in the springs' place
-  bool seek_holds = true;                   // also where the robot begins in the object's place
+  bool seek_holds = true;                   // `holds` of a blocked start, too
 };
 
 struct PlanResult {

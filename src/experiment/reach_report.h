@@ -49,10 +49,9 @@ std::vector<BasePosture> MovesIntoReach(const Scene& scene, const ReachAids& aid
                                         const ReachMapOptions& options);
 
 // Postures from which hand poses that hold an object are reached and can be lifted by `lift` (m);
-// those from which most of 48 of them are come first, of equal ones the least.
+// those from which most of 48 of them are come first, of equal ones the least; at most `most`.
 std::vector<BasePosture> MovesToHold(const Scene& scene, const ReachAids& aids,
-                                     const std::vector<Pose>& X_WH, double lift,
-                                     std::size_t most = 5);
+                                     const std::vector<Pose>& X_WH, double lift, std::size_t most);
 
 std::string FormatReachReport(const ReachReport& report);
 // From above, side and above by columns, heights by rows; BGR.

@@ -115,7 +115,8 @@ void BendElsewhere(const RobotHand& robot, MappingProblem& free, int max_iterati
     const int v0 = robot.valve_of[finger.j0], v1 = robot.valve_of[finger.j1];
     const double bend0 = before.x[v0] - free.lower[v0], bend1 = before.x[v1] - free.lower[v1];
     if (bend0 > kAtEnd && bend1 > kAtEnd) continue;
-    // The tip comes about as near to the knuckle by twice the angle at the middle joint.
+    // The tip comes about as near to the knuckle by twice the angle at the middle joint; well off
+    // the end of the range, where the slope may lead back.
     ValveAngles start = before.x;
     start[v0] = free.lower[v0] + 0.5 * bend1;
     start[v1] = std::min(free.lower[v1] + 2 * bend0 + 0.3, free.upper[v1]);

@@ -56,11 +56,11 @@ TEST(ReachReportTest, ThePlatformMovesToWhereAGraspHolds) {
     holds.push_back(turned);
   }
   const Scene scene = WithBallAt(0.9, 0.45);
-  const std::vector<BasePosture> moves = MovesToHold(scene, {false, true}, holds, 0.1);
+  const std::vector<BasePosture> moves = MovesToHold(scene, {false, true}, holds, 0.1, 5);
   ASSERT_FALSE(moves.empty());
   for (const BasePosture& base : moves) EXPECT_GT(base.at("platform_x"), 0);
-  EXPECT_TRUE(MovesToHold(scene, {false, true}, {}, 0.1).empty());
-  EXPECT_TRUE(MovesToHold(scene, {false, false}, holds, 0.1).empty());
+  EXPECT_TRUE(MovesToHold(scene, {false, true}, {}, 0.1, 5).empty());
+  EXPECT_TRUE(MovesToHold(scene, {false, false}, holds, 0.1, 5).empty());
 }
 
 TEST(ReachReportTest, ATurnedHipIsInTheTableWhereAStraightOneIsNot) {
