@@ -16,7 +16,7 @@
 namespace springgrasp {
 
 // Raised by hand when the same parameters would give another outcome than before.
-inline constexpr int kBehaviourVersion = 13;
+inline constexpr int kBehaviourVersion = 14;
 // Raised when the tables change.
 inline constexpr int kSchemaVersion = 2;
 

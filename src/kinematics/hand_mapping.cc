@@ -13,31 +13,32 @@ const std::array<Eigen::Vector2d, 4> kOtherStarts = {
     Eigen::Vector2d(0.1, 0.9), Eigen::Vector2d(0.9, 0.1), Eigen::Vector2d(0.3, 0.3),
     Eigen::Vector2d(0.8, 0.8)};  // of the ranges of j0, j1
 
-// Solution of A y = b by Cholesky's method, its loops of fixed length so that they are unrolled;
-// only A's lower part is read. False: A is not positive definite.
+// Solution of A y = b by A = L D L', its loops of fixed length so that they are unrolled; only A's
+// lower part is read. False: A is not positive definite.
 bool SolveFixed(const ValveMatrix& A, const ValveAngles& b, ValveAngles& y) {
   double L[kMostValves][kMostValves], inverse[kMostValves];
   for (int i = 0; i < kMostValves; ++i) {
-    for (int j = 0; j <= i; ++j) {
+    double scaled[kMostValves];  // L(i, .) D
+    double pivot = A(i, i);
+    for (int j = 0; j < i; ++j) {
       double sum = A(i, j);
-      for (int k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
-      if (j < i) {
-        L[i][j] = sum * inverse[j];
-      } else {
-        if (!(sum > 0)) return false;
-        inverse[i] = 1 / std::sqrt(sum);
-      }
+      for (int k = 0; k < j; ++k) sum -= scaled[k] * L[j][k];
+      scaled[j] = sum;
+      L[i][j] = sum * inverse[j];
+      pivot -= sum * L[i][j];
     }
+    if (!(pivot > 0)) return false;
+    inverse[i] = 1 / pivot;
   }
   for (int i = 0; i < kMostValves; ++i) {
     double sum = b[i];
     for (int k = 0; k < i; ++k) sum -= L[i][k] * y[k];
-    y[i] = sum * inverse[i];
+    y[i] = sum;
   }
   for (int i = kMostValves - 1; i >= 0; --i) {
-    double sum = y[i];
+    double sum = y[i] * inverse[i];
     for (int k = i + 1; k < kMostValves; ++k) sum -= L[k][i] * y[k];
-    y[i] = sum * inverse[i];
+    y[i] = sum;
   }
   return true;
 }
@@ -48,51 +49,56 @@ bool SolveFixed(const ValveMatrix& A, const ValveAngles& b, ValveAngles& y) {
 MappingSolution Minimize(MappingProblem& problem, const ValveAngles& start, int max_iterations) {
   constexpr double kStep = 3e-5;      // rad, where it ends
   constexpr double kGradient = 1e-9;  // of the cost, per rad
+  constexpr double kLeft = 1.5e-7;    // rad along a step; what is left across it may be much more
   MappingSolution best;
   best.x = start;
-  MappingProblem::Curvature now, trial;
-  ValveMatrix gauss, whole;
-  ValveAngles g, g_trial;
-  best.cost = problem.Evaluate(best.x, &now, &g);
+  best.cost = problem.Cost(best.x);
   best.squared_tip_errors = problem.squared_tip_errors();
+  MappingProblem::Derivatives d;
+  ValveMatrix whole;
   double damping = 1e-4, growth = 2;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    problem.Differentiate(d);
+    whole = d.A + d.B;
     double largest = 0;
-    gauss = now.A;
-    whole = now.A + now.B;
-    ValveAngles slope = g;
     for (int i = 0; i < kMostValves; ++i) {
-      const bool held = (best.x[i] <= problem.lower[i] && slope[i] > 0) ||
-                        (best.x[i] >= problem.upper[i] && slope[i] < 0);
+      const bool held = (best.x[i] <= problem.lower[i] && d.g[i] > 0) ||
+                        (best.x[i] >= problem.upper[i] && d.g[i] < 0);
       if (held) {
-        slope[i] = 0;
-        for (ValveMatrix* m : {&gauss, &whole}) {
+        d.g[i] = 0;
+        for (ValveMatrix* m : {&d.A, &whole}) {
           m->row(i).setZero();
           m->col(i).setZero();
           (*m)(i, i) = 1;
         }
       }
-      largest = std::max(largest, std::abs(slope[i]));
+      largest = std::max(largest, std::abs(d.g[i]));
     }
     if (largest < kGradient) return best;
-    const ValveAngles diagonal = gauss.diagonal(), whole_diagonal = whole.diagonal();
+    const ValveAngles diagonal = d.A.diagonal(), whole_diagonal = whole.diagonal();
     for (int attempt = 0;; ++attempt) {
       if (attempt == 30) return best;
       whole.diagonal() = whole_diagonal + damping * diagonal;
       ValveAngles step;
-      if (!SolveFixed(whole, slope, step)) {
-        gauss.diagonal() = (1 + damping) * diagonal;
-        if (!SolveFixed(gauss, slope, step)) return best;
+      const bool newton = SolveFixed(whole, d.g, step);
+      if (!newton) {
+        d.A.diagonal() = (1 + damping) * diagonal;
+        if (!SolveFixed(d.A, d.g, step)) return best;
       }
       const ValveAngles x = (best.x - step).cwiseMax(problem.lower).cwiseMin(problem.upper);
-      if (!((x - best.x).cwiseAbs().maxCoeff() > kStep)) return best;
-      const double cost = problem.Evaluate(x, &trial, &g_trial);
+      const double moved = (x - best.x).cwiseAbs().maxCoeff();
+      if (!(moved > kStep)) return best;
+      const double cost = problem.Cost(x);
       if (cost < best.cost) {
+        // Along a Newton step that is inside the ranges the cost falls by g step where it is a
+        // parabola; a third derivative that takes the part p from that leaves a next step of 3/2 p
+        // along it.
+        const double fall = d.g.dot(step), gained = best.cost - cost;
+        const bool inside = newton && x == best.x - step;
         best.x = x;
         best.cost = cost;
         best.squared_tip_errors = problem.squared_tip_errors();
-        now = trial;
-        g = g_trial;
+        if (inside && 1.5 * std::abs(gained / fall - 1) * moved < kLeft) return best;
         damping = std::max(damping / 10, 1e-12);
         growth = 2;
         break;
@@ -113,6 +119,7 @@ void BendElsewhere(const RobotHand& robot, MappingProblem& free, int max_iterati
   const MappingSolution before = solution;
   for (const RobotHand::Finger& finger : robot.fingers) {
     const int v0 = robot.valve_of[finger.j0], v1 = robot.valve_of[finger.j1];
+    if (v0 == v1) continue;
     const double bend0 = before.x[v0] - free.lower[v0], bend1 = before.x[v1] - free.lower[v1];
     if (bend0 > kAtEnd && bend1 > kAtEnd) continue;
     // The tip comes about as near to the knuckle by twice the angle at the middle joint; well off
@@ -169,7 +176,7 @@ void MapOnwards(const RobotHand& robot, const std::vector<MappingTarget>& target
         const ValveAngles x = other.x.cwiseMax(problem.lower).cwiseMin(problem.upper);
         if (x != other.x) heading = other.x;
         solution.x = x;
-        solution.cost = problem.Evaluate(x, nullptr, nullptr);
+        solution.cost = problem.Cost(x);
         solution.squared_tip_errors = problem.squared_tip_errors();
       }
     }

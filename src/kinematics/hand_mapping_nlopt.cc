@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <nlopt.hpp>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -18,10 +19,12 @@ MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target
                                     void* context) {
     ValveAngles angles = ValveAngles::Zero();
     std::copy(x.begin(), x.end(), angles.data());
-    ValveAngles g;
-    const double cost = static_cast<MappingProblem*>(context)->Evaluate(
-        angles, nullptr, gradient.empty() ? nullptr : &g);
-    for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] = 2 * g[i];
+    auto& problem = *static_cast<MappingProblem*>(context);
+    const double cost = problem.Cost(angles);
+    if (!gradient.empty()) {
+      const ValveAngles g = problem.Gradient();
+      for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] = 2 * g[static_cast<int>(i)];
+    }
     return cost;
   };
   solver.set_min_objective(objective, &problem);
@@ -33,13 +36,14 @@ MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target
   solver.set_xtol_abs(3e-5);
   solver.set_ftol_rel(1e-12);
   solver.set_maxeval(500);
-  RandomEngine engine = MakeStream(0, 0, "mapping yardstick");
+  std::optional<RandomEngine> engine;
   MappingSolution best;
   best.cost = std::numeric_limits<double>::infinity();
   for (int s = 0; s < starts; ++s) {
     std::vector<double> x = as_vector(problem.Start());
+    if (s == 1) engine = MakeStream(0, 0, "mapping yardstick");
     for (int v = 0; v < n && s > 0; ++v) {
-      x[v] = Uniform(engine, problem.lower[v], problem.upper[v]);
+      x[v] = Uniform(*engine, problem.lower[v], problem.upper[v]);
     }
     double found = 0;
     try {
@@ -49,7 +53,7 @@ MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target
     }
     ValveAngles angles = ValveAngles::Zero();
     std::copy(x.begin(), x.end(), angles.data());
-    const double cost = problem.Evaluate(angles, nullptr, nullptr);
+    const double cost = problem.Cost(angles);
     if (cost < best.cost) best = {angles, cost, problem.squared_tip_errors()};
   }
   return ResultOf(problem, best);

@@ -80,48 +80,43 @@ class MappingProblem {
     return Valves(q).cwiseMax(lower).cwiseMin(upper);
   }
 
-  // S' of Eq. (15) with our own rows: the sum of squares |r|^2; A = J'J and g = J'r where wanted,
-  // and the rest of the second derivatives, B = sum of r times its own.
-  struct Curvature {
-    ValveMatrix A, B;
-  };
-  double Evaluate(const ValveAngles& x, Curvature* curvature, ValveAngles* g) {
+  // S' of Eq. (15) with our own rows: the sum of squares |r|^2.
+  double Cost(const ValveAngles& x) {
     Joints(x);
     hand_.Move(x);
-    ValveMatrix* A = nullptr;
-    if (curvature != nullptr) {
-      A = &curvature->A;
-      A->setZero();
-      curvature->B.setZero();
-      for (int v = num_valves(); v < kMostValves; ++v) (*A)(v, v) = 1;
-    }
-    if (g != nullptr) g->setZero();
     double cost = 0;
-    const auto add = [&](double weight, int joint, double wanted) {
-      const int v = robot_.valve_of[joint];
+    ForRows([&](double weight, int joint, double wanted) {
       const double r = weight * (q_[joint] - wanted);
       cost += r * r;
-      if (A != nullptr) (*A)(v, v) += weight * weight;
-      if (g != nullptr) (*g)[v] += weight * r;
-    };
+    });
     for (int f = 0; f < kNumFingers; ++f) {
-      const RobotHand::Finger& finger = robot_.fingers[f];
-      add(kJointScale, finger.j0, target_.sigma[f][0]);
-      add(kJointScale, finger.j1, target_.sigma[f][1]);
-      AddTip(f, curvature, g, cost);
-    }
-    if (robot_.palm >= 0)
-      add(options_.palm_weight / std::numbers::pi, robot_.palm, options_.palm_wanted);
-    if (robot_.opposition >= 0) add(kJointScale, robot_.opposition, target_.opposition);
-    if (warm_ && options_.smoothness > 0) {
-      for (int j = 0; j < robot_.tree.num_joints(); ++j) {
-        add(options_.smoothness / std::numbers::pi, j, previous_[j]);
-      }
+      tip_error_[f] = TipError(f);
+      squared_tip_errors_[f] = tip_error_[f].squaredNorm();
+      cost += TipWeight(f) * squared_tip_errors_[f];
     }
     return cost;
   }
 
-  // Of the tips at the last evaluation, m^2.
+  // Of |r|^2 / 2 where Cost was last taken: g = J'r; A = J'J and B, the rest of the second
+  // derivatives (the sum of r times its own), both below the diagonal only.
+  struct Derivatives {
+    ValveAngles g;
+    ValveMatrix A, B;
+  };
+  void Differentiate(Derivatives& d) const {
+    d.A.setZero();
+    d.B.setZero();
+    for (int v = num_valves(); v < kMostValves; ++v) d.A(v, v) = 1;
+    d.g = JointGradient(&d.A);
+    for (int f = 0; f < kNumFingers; ++f) AddTip(f, d.g, &d);
+  }
+  ValveAngles Gradient() const {
+    ValveAngles g = JointGradient(nullptr);
+    for (int f = 0; f < kNumFingers; ++f) AddTip(f, g, nullptr);
+    return g;
+  }
+
+  // Of the tips where Cost was last taken, m^2.
   const PerFinger<double>& squared_tip_errors() const { return squared_tip_errors_; }
 
   ValveAngles lower, upper;  // of the valves' angles, rad
@@ -133,20 +128,48 @@ class MappingProblem {
     return body.R_HB * frame.X_BF.translation() + body.p_HB - target_.p_HF[f];
   }
 
+  double TipWeight(int f) const {
+    const double length = robot_.fingers[f].length;
+    return target_.lambda[f] / (3 * 4 * length * length);
+  }
+
+  // Calls row(weight, joint, wanted angle) for every residual of one joint.
+  template <typename Row>
+  void ForRows(const Row& row) const {
+    for (int f = 0; f < kNumFingers; ++f) {
+      row(kJointScale, robot_.fingers[f].j0, target_.sigma[f][0]);
+      row(kJointScale, robot_.fingers[f].j1, target_.sigma[f][1]);
+    }
+    if (robot_.palm >= 0)
+      row(options_.palm_weight / std::numbers::pi, robot_.palm, options_.palm_wanted);
+    if (robot_.opposition >= 0) row(kJointScale, robot_.opposition, target_.opposition);
+    if (warm_ && options_.smoothness > 0) {
+      for (int j = 0; j < robot_.tree.num_joints(); ++j) {
+        row(options_.smoothness / std::numbers::pi, j, previous_[j]);
+      }
+    }
+  }
+
+  ValveAngles JointGradient(ValveMatrix* A) const {
+    ValveAngles g = ValveAngles::Zero();
+    ForRows([&](double weight, int joint, double wanted) {
+      const int v = robot_.valve_of[joint];
+      g[v] += weight * weight * (q_[joint] - wanted);
+      if (A != nullptr) (*A)(v, v) += weight * weight;
+    });
+    return g;
+  }
+
   // The position term of a finger, by the joints between its tip and H.
-  void AddTip(int f, Curvature* curvature, ValveAngles* g, double& cost) {
+  void AddTip(int f, ValveAngles& g, Derivatives* d) const {
     constexpr int kMostJoints = 8;
-    const RobotHand::Finger& finger = robot_.fingers[f];
-    const Eigen::Vector3d e = TipError(f);
-    const double weight = target_.lambda[f] / (3 * 4 * finger.length * finger.length);
-    squared_tip_errors_[f] = e.squaredNorm();
-    cost += weight * squared_tip_errors_[f];
-    if (g == nullptr) return;
+    const Eigen::Vector3d& e = tip_error_[f];
+    const double weight = TipWeight(f);
     const Eigen::Vector3d p_HF = e + target_.p_HF[f];
     std::array<Eigen::Vector3d, kMostJoints> axis, column;
     std::array<int, kMostJoints> valve;
     int count = 0;
-    for (int b = robot_.tree.frames[finger.tip].node; b >= 0; b = hand_.body(b).parent) {
+    for (int b = robot_.tree.frames[robot_.fingers[f].tip].node; b >= 0; b = hand_.body(b).parent) {
       const FastHand::Body& body = hand_.body(b);
       if (body.valve < 0 || count == kMostJoints) continue;
       axis[count] = body.R_HB * body.axis;
@@ -154,17 +177,16 @@ class MappingProblem {
       valve[count++] = body.valve;
     }
     for (int i = 0; i < count; ++i) {
-      (*g)[valve[i]] += weight * column[i].dot(e);
-      if (curvature == nullptr) continue;
+      g[valve[i]] += weight * column[i].dot(e);
+      if (d == nullptr) continue;
       // d2p / dq_i dq_j: what the joint nearer to the tip does, turned by the other.
+      const Eigen::Vector3d e_x_axis = e.cross(axis[i]);
       for (int j = 0; j <= i; ++j) {
-        const double a = weight * column[i].dot(column[j]);
-        const double b = weight * e.dot(axis[i].cross(column[j]));
-        curvature->A(valve[i], valve[j]) += a;
-        curvature->B(valve[i], valve[j]) += b;
-        if (j == i) continue;
-        curvature->A(valve[j], valve[i]) += a;
-        curvature->B(valve[j], valve[i]) += b;
+        // Joints of one valve count twice, as (i, j) and as (j, i).
+        const double times = j < i && valve[i] == valve[j] ? 2 * weight : weight;
+        const int row = std::max(valve[i], valve[j]), col = std::min(valve[i], valve[j]);
+        d->A(row, col) += times * column[i].dot(column[j]);
+        d->B(row, col) += times * e_x_axis.dot(column[j]);
       }
     }
   }
@@ -176,6 +198,7 @@ class MappingProblem {
   bool warm_ = false;
   Eigen::VectorXd q_;
   FastHand& hand_;
+  PerFinger<Eigen::Vector3d> tip_error_;  // where Cost was last taken, m
   PerFinger<double> squared_tip_errors_ = {};
 };
 
