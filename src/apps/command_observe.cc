@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "apps/command.h"
-#include "apps/observe_recorded.h"
+#include "apps/recorded_options.h"
 #include "base/error.h"
 #include "experiment/observe.h"
 #include "experiment/table.h"
@@ -20,7 +20,6 @@ struct Options {
   double fps = 0;
   std::optional<double> noise;
   std::optional<std::string> tracker;
-  std::string hand = "right";
   ObserveRecordedOptions recorded;
   bool particles = false;
   bool recorded_only = false;  // an option of recorded video was given
@@ -34,14 +33,6 @@ TrackerKind Kind(const Options& options) {
 
 int RunRecorded(Options options) {
   ObserveRecordedOptions& recorded = options.recorded;
-  const std::pair<const char*, const std::string*> needed[] = {
-      {"--left", &recorded.left},
-      {"--right", &recorded.right},
-      {"--intrinsics", &recorded.intrinsics},
-      {"--extrinsics", &recorded.extrinsics}};
-  for (const auto& [name, value] : needed) {
-    ThrowUnless(!value->empty(), "observe on recorded video needs {} too", name);
-  }
   ThrowUnless(options.frames.empty() && !options.noise,
               "--save-frames and --noise are for a scene, not for recorded video");
   recorded.particles = options.particles;
@@ -49,7 +40,6 @@ int RunRecorded(Options options) {
   recorded.output = options.output;
   recorded.overlay = options.overlay;
   recorded.truth = options.truth;
-  recorded.left_hand = options.hand == "left";
   recorded.tracker = Kind(options);
   recorded.fps = options.fps;
   recorded.seed = options.seed;
@@ -75,9 +65,7 @@ void Print(const Observation& observation) {
 }
 
 int RunObserve(const Options& options) {
-  const bool recorded = !options.recorded.left.empty() || !options.recorded.right.empty() ||
-                        !options.recorded.intrinsics.empty() ||
-                        !options.recorded.extrinsics.empty();
+  const bool recorded = IsRecorded(options.recorded);
   ThrowUnless(recorded != !options.scene.empty(),
               "observe takes either a scene or --left, --right, --intrinsics and --extrinsics");
   if (recorded) return RunRecorded(options);
@@ -117,26 +105,7 @@ void AddObserveCommand(CLI::App& app, int& exit_code) {
       "Tracks a demonstration before the robot's wide-angle cameras, or on recorded stereo video.",
       "scenes/pinch_ball.yaml -o out/pinch.csv --overlay out/pinch.mp4");
   command->add_option("scene", options->scene, "scene YAML with a demonstrator");
-  ObserveRecordedOptions& recorded = options->recorded;
-  command->add_option("--left", recorded.left, "recorded video or image pattern, left camera");
-  command->add_option("--right", recorded.right, "the same of the right camera");
-  command->add_option("--intrinsics", recorded.intrinsics, "M1 D1 M2 D2, as stereo_calib writes");
-  command->add_option("--extrinsics", recorded.extrinsics, "R T (metres), likewise");
-  const std::vector<CLI::Option*> recorded_only = {
-      command->add_option("--camera-pose", recorded.camera_pose,
-                          "\"x y z qw qx qy qz\" of the left camera in the world"),
-      command->add_option("--marker-hue", recorded.marker_hue,
-                          "of the caps, degrees (0 red, 120 green, 240 blue), or auto"),
-      command->add_option("--cap-diameter", recorded.cap_diameter, "metres (default: found)")
-          ->check(CLI::Range(0.005, 0.05)),
-      command->add_option("--cap-length", recorded.cap_length, "metres, tip's end to open end")
-          ->check(CLI::Range(0.005, 0.1)),
-      command
-          ->add_option("--cap-centre", recorded.cap_centre,
-                       "metres, tip's end to the point that is written (default: the radius)")
-          ->check(CLI::Range(0.001, 0.1)),
-      command->add_option("--hand", options->hand, "that shows its palm: right or left")
-          ->check(CLI::IsMember({"right", "left"}))};
+  const std::vector<CLI::Option*> recorded_only = AddRecordedOptions(*command, options->recorded);
   command->add_option("-o,--output", options->output, "demonstration CSV: what was tracked")
       ->required();
   command->add_option("--truth", options->truth,

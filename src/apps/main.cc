@@ -54,6 +54,7 @@ int Main(int argc, char** argv) {
   AddLearnCommand(app, exit_code);
   AddGenerateCommand(app, exit_code);
   AddPerformCommand(app, exit_code);
+  AddGraspCommand(app, exit_code);
   AddLibraryCommand(app, exit_code);
   AddRecogniseCommand(app, exit_code);
   AddInspectCommand(app, exit_code);

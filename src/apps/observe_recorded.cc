@@ -50,7 +50,7 @@ TrackDemonstrationOptions TrackingOptions(const ObserveRecordedOptions& options)
   tracking.tracker.kind = options.tracker;
   tracking.tracker.cap = Cap(options);
   tracking.tracker.colour.hue_deg = MarkerHue(options.marker_hue);
-  tracking.tracker.hand = options.left_hand ? Handedness::kLeft : Handedness::kRight;
+  tracking.tracker.hand = options.hand == "left" ? Handedness::kLeft : Handedness::kRight;
   tracking.frame = options.camera_pose.empty() ? "camera_left" : "world";
   return tracking;
 }
@@ -100,7 +100,7 @@ int ObserveRecorded(const ObserveRecordedOptions& options) {
   const StereoCameras cameras = ReadStereoCalibration(
       options.intrinsics, options.extrinsics, recorded.size().width, recorded.size().height, X_WL);
   const ModelPtr human = LoadModelFile(
-      ModelPath(options.left_hand ? "mmm_hand/mmm_hand_l.xml" : "mmm_hand/mmm_hand_r.xml"));
+      ModelPath(options.hand == "left" ? "mmm_hand/mmm_hand_l.xml" : "mmm_hand/mmm_hand_r.xml"));
   const KinematicTree hand = KinematicTreeOf(*human, "mmm_hand");
 
   std::optional<VideoWriter> video;

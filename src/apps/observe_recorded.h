@@ -16,9 +16,9 @@ struct ObserveRecordedOptions {
   std::string camera_pose;         // of the left camera in W, as ParsePose; empty: W is the camera
   std::string marker_hue = "120";  // degrees, or auto
   double cap_diameter = 0, cap_length = 0;  // m; 0: found, usual
-  double cap_centre = 0;   // m, from a cap's end to what is reported; 0: its radius
-  bool left_hand = false;  // that shows its palm
-  bool particles = false;  // drawn into the overlay
+  double cap_centre = 0;       // m, from a cap's end to what is reported; 0: its radius
+  std::string hand = "right";  // right | left: that shows its palm
+  bool particles = false;      // drawn into the overlay
   TrackerKind tracker = TrackerKind::kOutline;
   double fps = 0;  // 0: the video's
   std::uint64_t seed = 1;

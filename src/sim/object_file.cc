@@ -8,6 +8,7 @@
 #include "sim/mjcf_part.h"
 #include "sim/model_index.h"
 #include "sim/mujoco_handles.h"
+#include "sim/obj_check.h"
 #include "sim/object_mesh.h"
 
 namespace springgrasp {
@@ -16,6 +17,7 @@ namespace {
 using Kind = ObjectPart::Kind;
 
 ModelPtr LoadMesh(const std::string& path) {
+  CheckObj(path);
   const std::string file = std::filesystem::absolute(path);
   return LoadModelText(fmt::format("<mujoco><asset><mesh name='mesh' file='{}'/></asset><worldbody>"
                                    "<body><geom type='mesh' mesh='mesh'/></body></worldbody>"
@@ -31,6 +33,11 @@ ModelPtr LoadObject(const std::string& path) {
   const XmlElement* body = world == nullptr ? nullptr : world->FirstChildElement("body");
   ThrowUnless(body != nullptr && body->NextSiblingElement("body") == nullptr,
               "{}: expected exactly one body in the world of an object file", path);
+  const XmlElement* asset = part->FirstChildElement("mujoco")->FirstChildElement("asset");
+  for (const XmlElement* mesh = asset == nullptr ? nullptr : asset->FirstChildElement("mesh");
+       mesh != nullptr; mesh = mesh->NextSiblingElement("mesh")) {
+    if (mesh->Attribute("file") != nullptr) CheckObj(mesh->Attribute("file"));
+  }
   return LoadModelFile(path);
 }
 

@@ -168,6 +168,24 @@ TEST_F(BadInputTest, Demonstrations) {
   refused(SoundRows(3), "samples");
 }
 
+TEST_F(BadInputTest, ObjectsOfOnesOwn) {
+  const std::string grasp = "springgrasp grasp ", shown = " --type pinch -o out --demonstration '" +
+                                                          SourceFolder() +
+                                                          "/models/grasps/pinch.csv'";
+  ExpectRefused(grasp + "nowhere.obj" + shown, "nowhere.obj: no such file; an object is a mesh");
+  ExpectRefused(grasp + "sphere:0.04 --type pinch -o out", "either --demonstration or --left");
+  ExpectRefused(grasp + "sphere:0.04 --left l.mp4 --type pinch -o out", "needs --right too");
+  ExpectRefused(grasp + "sphere:0.04 --marker-hue 90" + shown, "are for recorded video");
+  ExpectRefused(grasp + "sphere:0.04 --shape sphere:0.05" + shown, "sphere:0.04 is what it is");
+  ExpectRefused(grasp + "sphere:0.04 --mass -1" + shown, "mass is -1");
+  Write("millimetres.obj",
+        "v 0 0 0\nv 40 0 0\nv 0 40 0\nv 0 0 40\n"
+        "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  ExpectRefused(grasp + "millimetres.obj" + shown, "lengths are in metres");
+  Write("broken.obj", "v 0 0\n");
+  ExpectRefused(grasp + "broken.obj" + shown, "broken.obj");
+}
+
 TEST_F(BadInputTest, OutputsThatCannotBe) {
   fs::create_directory(folder_ / "folder");
   Write("file", "");

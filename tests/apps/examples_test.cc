@@ -51,6 +51,8 @@ TEST_F(ExamplesTest, OnModelsAndGrasps) {
   EXPECT_TRUE(Wrote("motion.csv"));
   EXPECT_EQ(Paste("perform").exit_code, 0);
   EXPECT_TRUE(Wrote("perform/outcome.yaml"));
+  EXPECT_EQ(Paste("grasp").exit_code, 0);
+  EXPECT_TRUE(Wrote("grasp/outcome.yaml"));
 }
 
 // One trial only: the rest of the run would tell nothing more about the example.

@@ -18,8 +18,8 @@ using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 const std::vector<std::string> kCommands = {"run",     "replay",    "observe", "learn",  "generate",
-                                            "library", "recognise", "perform", "status", "export",
-                                            "check",   "model",     "inspect"};
+                                            "library", "recognise", "perform", "grasp",  "status",
+                                            "export",  "check",     "model",   "inspect"};
 
 TEST(ProgramTest, EveryCommandIsListedAndShowsAnExampleOfItself) {
   const TemporaryFolder folder;
@@ -52,6 +52,21 @@ TEST(ProgramTest, OnAMeshTheBlendOfTwoGraspsBeginsAndEndsWithThem) {
   const auto between = generated(blend + "0.5");
   EXPECT_GT(between, std::min(pinch, power));
   EXPECT_LT(between, std::max(pinch, power));
+}
+
+TEST(ProgramTest, AMeshAndADemonstrationAreATrialThatPerformRepeats) {
+  const TemporaryFolder folder;
+  const ProgramResult own = RunProgram(
+      "springgrasp grasp '" + SourceFolder() + "/tests/testdata/sim_wedge.obj' --demonstration '" +
+          SourceFolder() + "/models/grasps/pinch.csv' --type pinch --mass 0.1 -o own",
+      folder / ".");
+  EXPECT_EQ(own.exit_code, 0) << own.err;
+  EXPECT_THAT(own.out, HasSubstr("object taken for box:0.06x0.04x0.04"));
+  EXPECT_THAT(own.out, HasSubstr("outcome: success"));
+  RunProgram("springgrasp perform own/grasp.yaml --scene own/scene.yaml -o again", folder / ".");
+  for (const char* file : {"outcome.yaml", "trajectory.csv", "motion.csv"}) {
+    EXPECT_EQ(ReadFile(folder / "own/" + file), ReadFile(folder / "again/" + file)) << file;
+  }
 }
 
 TEST(ProgramTest, VersionNamesProgramMujocoAndRenderer) {

@@ -3,11 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "experiment/experiment.h"
+#include "temporary_folder.h"
 
 namespace springgrasp {
 
@@ -22,30 +21,6 @@ inline constexpr const char* kSmallExperiment =
     "cases:\n"
     "  - {name: light, scene: scene.yaml, grasp: pinch}\n"
     "  - {name: heavy, scene: scene.yaml, grasp: pinch, set: {objects.0.mass: 0.5}}\n";
-
-// A fresh folder, removed at the end of the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "springgrasp_XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-  std::string Write(const std::string& name, const std::string& content) const {
-    std::ofstream(path_ / name) << content;
-    return *this / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 // Parses `text` as if it lay in `folder`, beside the small scene.
 inline Experiment SmallExperiment(const TemporaryFolder& folder,
