@@ -1,6 +1,7 @@
 #include "kinematics/fast_hand.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 
@@ -10,6 +11,7 @@ FastHand::FastHand(const RobotHand& robot) {
   ThrowUnless(robot.valves.size() <= kMostValves,
               "a hand to map to has at most {} valves, this one has {}", kMostValves,
               robot.valves.size());
+  x_.setConstant(std::numeric_limits<double>::quiet_NaN());
   count_ = static_cast<int>(robot.tree.nodes.size());
   ThrowUnless(count_ <= kMostNodes, "a hand to map to has at most {} bodies, this one has {}",
               kMostNodes, count_);
@@ -34,15 +36,17 @@ FastHand::FastHand(const RobotHand& robot) {
 }
 
 void FastHand::Move(const ValveAngles& x) {
-  std::array<double, kMostValves> s, c;
+  if (x == x_) return;
   for (Eigen::Index v = 0; v < x.size(); ++v) {
-    s[v] = std::sin(x[v]);
-    c[v] = std::cos(x[v]);
+    if (x[v] == x_[v]) continue;
+    sin_[v] = std::sin(x[v]);
+    cos_[v] = std::cos(x[v]);
   }
+  x_ = x;
   for (int i = 0; i < count_; ++i) {
     Body& body = bodies_[i];
     Eigen::Matrix3d turn = body.fixed;
-    if (body.valve >= 0) turn += c[body.valve] * body.C + s[body.valve] * body.S;
+    if (body.valve >= 0) turn += cos_[body.valve] * body.C + sin_[body.valve] * body.S;
     if (body.parent < 0) {
       body.R_HB = turn;
       body.p_HB = body.p;

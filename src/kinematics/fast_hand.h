@@ -18,6 +18,7 @@ class FastHand {
   // Throws Error for a hand with slides, or more bodies or valves than fit.
   explicit FastHand(const RobotHand& robot);
 
+  // Does nothing for the angles that it was moved to last.
   void Move(const ValveAngles& x);
 
   struct Body {
@@ -33,6 +34,8 @@ class FastHand {
   static constexpr int kMostNodes = 24;
   std::array<Body, kMostNodes> bodies_;
   int count_ = 0;
+  ValveAngles x_;  // where it is; at first nowhere
+  std::array<double, kMostValves> sin_, cos_;
 };
 
 }  // namespace springgrasp

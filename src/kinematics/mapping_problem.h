@@ -27,6 +27,10 @@ class MappingProblem {
         options_(options),
         q_(robot.open),
         hand_(hand) {
+    for (int f = 0; f < kNumFingers; ++f) {
+      const double length = robot.fingers[f].length;
+      tip_weight_[f] = target.lambda[f] / (3 * 4 * length * length);
+    }
     lower.setZero();
     upper.setZero();
     for (int v = 0; v < num_valves(); ++v) {
@@ -92,7 +96,7 @@ class MappingProblem {
     for (int f = 0; f < kNumFingers; ++f) {
       tip_error_[f] = TipError(f);
       squared_tip_errors_[f] = tip_error_[f].squaredNorm();
-      cost += TipWeight(f) * squared_tip_errors_[f];
+      cost += tip_weight_[f] * squared_tip_errors_[f];
     }
     return cost;
   }
@@ -128,11 +132,6 @@ class MappingProblem {
     return body.R_HB * frame.X_BF.translation() + body.p_HB - target_.p_HF[f];
   }
 
-  double TipWeight(int f) const {
-    const double length = robot_.fingers[f].length;
-    return target_.lambda[f] / (3 * 4 * length * length);
-  }
-
   // Calls row(weight, joint, wanted angle) for every residual of one joint.
   template <typename Row>
   void ForRows(const Row& row) const {
@@ -164,7 +163,7 @@ class MappingProblem {
   void AddTip(int f, ValveAngles& g, Derivatives* d) const {
     constexpr int kMostJoints = 8;
     const Eigen::Vector3d& e = tip_error_[f];
-    const double weight = TipWeight(f);
+    const double weight = tip_weight_[f];
     const Eigen::Vector3d p_HF = e + target_.p_HF[f];
     std::array<Eigen::Vector3d, kMostJoints> axis, column;
     std::array<int, kMostJoints> valve;
@@ -198,6 +197,7 @@ class MappingProblem {
   bool warm_ = false;
   Eigen::VectorXd q_;
   FastHand& hand_;
+  PerFinger<double> tip_weight_;
   PerFinger<Eigen::Vector3d> tip_error_;  // where Cost was last taken, m
   PerFinger<double> squared_tip_errors_ = {};
 };
