@@ -19,10 +19,10 @@ MappingResult MapHandByNlopt(const RobotHand& robot, const MappingTarget& target
                                     void* context) {
     ValveAngles angles = ValveAngles::Zero();
     std::copy(x.begin(), x.end(), angles.data());
-    auto& problem = *static_cast<MappingProblem*>(context);
-    const double cost = problem.Cost(angles);
+    auto& minimised = *static_cast<MappingProblem*>(context);
+    const double cost = minimised.Cost(angles);
     if (!gradient.empty()) {
-      const ValveAngles g = problem.Gradient();
+      const ValveAngles g = minimised.Gradient();
       for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] = 2 * g[static_cast<int>(i)];
     }
     return cost;
