@@ -75,6 +75,11 @@ std::string SceneText(const std::string& path, const Shape& shape, const Options
     text = ApplyOverride(text, "objects.0." + key + "=" + value);
   };
   text = RemoveKey(text, "objects.0.model");
+  if (fs::path(options.object).extension() == ".xml") {
+    for (const char* own : {"mass", "friction"}) {
+      text = RemoveKey(text, std::string("objects.0.") + own);
+    }
+  }
   if (!IsPrimitive(options.object)) set("model", "'" + fs::absolute(options.object).string() + "'");
   set("shape", FormatShape(shape));
   if (options.mass) set("mass", fmt::format("{}", *options.mass));

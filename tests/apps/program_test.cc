@@ -69,6 +69,23 @@ TEST(ProgramTest, AMeshAndADemonstrationAreATrialThatPerformRepeats) {
   }
 }
 
+TEST(ProgramTest, AnMjcfOfOnesOwnKeepsItsMassAndFriction) {
+  const TemporaryFolder folder;
+  const std::string egg = SourceFolder() + "/models/objects/egg.xml";
+  const auto performed = [&](const std::string& more) {
+    const ProgramResult result =
+        RunProgram("springgrasp grasp '" + egg + "' --demonstration '" + SourceFolder() +
+                       "/models/grasps/pinch.csv' --type pinch -o own" + more,
+                   folder / ".");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return ReadScene(folder / "own/scene.yaml").objects.at(0);
+  };
+  const ObjectFile file = ReadObjectFile(egg);
+  EXPECT_EQ(performed("").mass, file.mass);
+  EXPECT_EQ(performed("").friction, file.friction);
+  EXPECT_EQ(performed(" --mass 0.2").mass, 0.2);
+}
+
 TEST(ProgramTest, VersionNamesProgramMujocoAndRenderer) {
   const TemporaryFolder folder;
   const ProgramResult result = RunProgram("springgrasp --version", folder / ".");
