@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "apps/command.h"
+#include "apps/learn_options.h"
 #include "apps/perform_once.h"
 #include "apps/recorded_options.h"
 #include "base/error.h"
@@ -130,33 +131,16 @@ void AddGraspCommand(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("--demonstration", options->demonstration, "demonstration CSV");
   const std::vector<CLI::Option*> recorded_only = AddRecordedOptions(*command, options->recorded);
-  LearnOptions& learn = options->learn;
-  command->add_option("--type", learn.type, "grasp type")
-      ->required()
-      ->check(CLI::IsMember({"pinch", "tripod", "power", "lateral"}));
-  command
-      ->add_option("--hand-length", learn.hand_length,
-                   "of the demonstrator, wrist to middle fingertip, m")
-      ->check(CLI::Range(0.1, 0.3))
-      ->capture_default_str();
+  AddLearnOptions(*command, options->learn);
   command->add_option("--shape", options->shape,
                       "that the robot takes a file's object for (default: the closest primitive)");
   command->add_option("--mass", options->mass, "kg (default: an MJCF's own, the scene's)");
   command->add_option("--friction", options->friction, "sliding coefficient (default: likewise)");
   command->add_option("--scene", options->scene,
                       "whose first object's place it takes (default: one of the type)");
-  command->add_option("--seed", options->once.seed, "of the object's pose")->capture_default_str();
-  command
-      ->add_option("-o,--output", options->once.directory,
-                   "folder for grasp, scene, outcome and trajectories")
-      ->required();
-  command->add_option("--video", options->once.video, "video of robot and object (.mp4)");
-  command->add_option("--camera", options->once.camera,
-                      "camera of the video (default: the scene's overview cameras)");
+  AddPerformOnceOptions(*command, options->once);
   command->callback([options, recorded_only, &exit_code] {
-    for (const CLI::Option* option : recorded_only) {
-      options->recorded_only = options->recorded_only || option->count() > 0;
-    }
+    options->recorded_only = AnyGiven(recorded_only);
     exit_code = RunGrasp(*options);
   });
 }

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "apps/command.h"
+#include "apps/learn_options.h"
 #include "demonstration/demonstration.h"
 #include "demonstration/half_seen.h"
 #include "demonstration/steady_hand.h"
@@ -43,30 +44,13 @@ int Learn(Options options) {
 
 void AddLearnCommand(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  LearnOptions& learn = options->learn;
   CLI::App* command = AddCommand(
       app, "learn", "Learns a grasp from a demonstration: reach, contacts, spring constants.",
       "experiments/first_grasps/pinch.csv --type pinch -o out/pinch.yaml");
   command->add_option("demonstration", options->demonstration, "demonstration CSV")->required();
-  command->add_option("--type", learn.type, "grasp type")
-      ->required()
-      ->check(CLI::IsMember({"pinch", "tripod", "power", "lateral"}));
+  AddLearnOptions(*command, options->learn);
   command->add_option("-o,--output", options->output, "grasp YAML")->required();
-  command
-      ->add_option("--dim", learn.dim, "springs in the hand plane (2, the paper) or in space (3)")
-      ->check(CLI::IsMember({2, 3}))
-      ->capture_default_str();
-  command
-      ->add_option("--profile", learn.profile,
-                   "human, paper: without our extensions, unforced: without central force")
-      ->check(CLI::IsMember({"human", "paper", "unforced"}))
-      ->capture_default_str();
-  command->add_option("--name", learn.name, "of the library entry (default: the type)");
-  command
-      ->add_option("--hand-length", learn.hand_length,
-                   "of the demonstrator, wrist to middle fingertip, m: scales the rest lengths")
-      ->check(CLI::Range(0.1, 0.3))
-      ->capture_default_str();
+  command->add_option("--name", options->learn.name, "of the library entry (default: the type)");
   command->add_option("--steady", options->steady,
                       "demonstration CSV to write: the hand as learning sees it, steadied by the "
                       "fingertips");

@@ -125,9 +125,7 @@ void AddObserveCommand(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember(std::vector<std::string>(kTrackerKinds.begin(), kTrackerKinds.end())));
   command->add_option("--seed", options->seed, "of the random streams")->capture_default_str();
   command->callback([options, recorded_only, &exit_code] {
-    for (const CLI::Option* option : recorded_only) {
-      options->recorded_only = options->recorded_only || option->count() > 0;
-    }
+    options->recorded_only = AnyGiven(recorded_only);
     exit_code = RunObserve(*options);
   });
 }

@@ -31,12 +31,7 @@ void AddPerformCommand(CLI::App& app, int& exit_code) {
       "experiments/first_grasps/pinch.yaml --scene scenes/pinch_ball.yaml -o out/perform");
   command->add_option("grasp", options->grasp, "grasp YAML of `learn`")->required();
   command->add_option("--scene", options->scene, "scene YAML")->required();
-  command->add_option("--seed", options->once.seed, "of the object's pose")->capture_default_str();
-  command->add_option("-o,--output", options->once.directory, "folder for outcome and trajectories")
-      ->required();
-  command->add_option("--video", options->once.video, "video of robot and object (.mp4)");
-  command->add_option("--camera", options->once.camera,
-                      "camera of the video (default: the scene's overview cameras)");
+  AddPerformOnceOptions(*command, options->once);
   command->callback([options, &exit_code] { exit_code = Perform(*options); });
 }
 

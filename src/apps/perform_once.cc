@@ -4,7 +4,6 @@
 
 #include <filesystem>
 
-#include "apps/command.h"
 #include "base/files.h"
 #include "base/random.h"
 #include "experiment/perform_grasp.h"
@@ -26,6 +25,17 @@ std::string In(const std::string& folder, const std::string& file) {
 }
 
 }  // namespace
+
+void AddPerformOnceOptions(CLI::App& command, PerformOnceOptions& options) {
+  command.add_option("--seed", options.seed, "of the object's pose")->capture_default_str();
+  command
+      .add_option("-o,--output", options.directory,
+                  "folder for outcome, trajectories and all else that is made")
+      ->required();
+  command.add_option("--video", options.video, "video of robot and object (.mp4)");
+  command.add_option("--camera", options.camera,
+                     "camera of the video (default: the scene's overview cameras)");
+}
 
 void CheckOutputPaths(const PerformOnceOptions& options) {
   CheckOutputPath(options.video);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "apps/command.h"
 #include "grasp/grasp.h"
 #include "sim/scene.h"
 
@@ -15,6 +16,9 @@ struct PerformOnceOptions {
   std::string camera;     // of the video; empty: the scene's overview cameras
   std::uint64_t seed = 0;
 };
+
+// Adds --seed, --output, --video and --camera.
+void AddPerformOnceOptions(CLI::App& command, PerformOnceOptions& options);
 
 // Throws Error unless all that can be written; changes nothing.
 void CheckOutputPaths(const PerformOnceOptions& options);

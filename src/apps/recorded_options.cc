@@ -27,6 +27,11 @@ std::vector<CLI::Option*> AddRecordedOptions(CLI::App& command, ObserveRecordedO
               ->check(CLI::IsMember({"right", "left"}))};
 }
 
+bool AnyGiven(const std::vector<CLI::Option*>& options) {
+  return std::any_of(options.begin(), options.end(),
+                     [](const CLI::Option* option) { return option->count() > 0; });
+}
+
 bool IsRecorded(const ObserveRecordedOptions& options) {
   const std::pair<const char*, const std::string*> needed[] = {
       {"--left", &options.left},

@@ -11,6 +11,8 @@ namespace springgrasp {
 // Adds --left to --hand. Returns those that tell nothing without a video.
 std::vector<CLI::Option*> AddRecordedOptions(CLI::App& command, ObserveRecordedOptions& options);
 
+bool AnyGiven(const std::vector<CLI::Option*>& options);
+
 // Whether a video was asked for. Throws Error if only a part of what it needs was named.
 bool IsRecorded(const ObserveRecordedOptions& options);
 

@@ -49,7 +49,9 @@ bool SolveFixed(const ValveMatrix& A, const ValveAngles& b, ValveAngles& y) {
 MappingSolution Minimize(MappingProblem& problem, const ValveAngles& start, int max_iterations) {
   constexpr double kStep = 3e-5;      // rad, where it ends
   constexpr double kGradient = 1e-9;  // of the cost, per rad
-  constexpr double kLeft = 1.5e-7;    // rad along a step; what is left across it may be much more
+  // rad along a step; across it much more may be left: with 3e-6 nine times as many frames are worse
+  // than by SLSQP, with this as many as without (bench/kinematics_bench).
+  constexpr double kLeft = 1.5e-7;
   MappingSolution best;
   best.x = start;
   best.cost = problem.Cost(best.x);
